@@ -1,0 +1,96 @@
+// Which node is which segment, and the anatomical frames of the segments in any pose.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/character.h"
+#include "base/math.h"
+#include "base/result.h"
+#include "base/segments.h"
+
+namespace ukemi {
+
+/// The nodes that move a segment.
+struct SegmentNodes {
+  /// Nodes that share the joint above the segment, proximal first; the last one carries the segment's
+  /// rotation in full, node k of n turns by (k + 1) / n of it. Empty: the segment is fused.
+  std::vector<int> chain;
+  /// True when the parent segment's node is no ancestor of chain.front() (IK-style feet): the clip then
+  /// moves its translation as well.
+  bool detached = false;
+  std::string by;  // "vrm", "name", "topology", "user"; "" when fused
+
+  bool fused() const { return chain.empty(); }
+  int node() const { return chain.empty() ? -1 : chain.back(); }
+};
+
+enum class RestPoseClass { t_pose, a_pose, neutral, other };
+std::string_view name(RestPoseClass pose);  // "T", "A", "neutral", "other"
+
+struct HumanoidOptions {
+  std::map<std::string, std::string> map;  // segment name -> node label, from the user
+  std::optional<double> metres_per_unit;
+  std::optional<char> up_axis;  // 'y' or 'z'
+  std::optional<double> height_m;
+};
+
+struct Humanoid {
+  PerSegment<SegmentNodes> segments;
+  /// Takes the pelvis's motion: the pelvis node, or the lowest node above pelvis, thighs and spine where
+  /// those do not hang on the pelvis node.
+  int root = -1;
+  Similarity world_from_file;  // metres, y up; no translation
+  double height_m = 0.0;       // sole to crown, standing
+  char up_axis = 'y';          // of the file
+  RestPoseClass rest_pose = RestPoseClass::other;
+  /// Pose the frames were read from: the rest pose, or another one when the rest pose is of no use (a BVH
+  /// whose zero pose is not a pose).
+  Pose reference;
+  /// Anatomical frame of each segment in its node: world_from_segment = world_from_node * this (rotations).
+  /// Axes in the neutral pose (upright, arms hanging, palms to the thighs, feet forward): x anterior, y up,
+  /// z to the subject's right, the same for all segments.
+  PerSegment<Quat> node_from_segment;
+  /// Further nodes that shapes and poses need; -1 where there are none.
+  int head_top = -1;
+  std::array<int, 2> toes{-1, -1};          // left, right
+  std::array<int, 2> middle_finger{-1, -1};  // base of the middle finger (or of the only one)
+};
+
+/// Finds the segments by the user's map, VRM human bones, names, then topology and geometry; then unit, up
+/// axis and anatomical frames (from the rest pose; a file with only motion may need its first frame).
+/// Errors: input, "not a humanoid: ..." with what was looked for and what was found; usage for a bad map.
+Result<Humanoid> map_humanoid(const Character& character, const HumanoidOptions& options, Diagnostics& diagnostics);
+
+/// Segments of a pose. Origin: the joint above the segment (the mean of its chain's nodes; pelvis: midway
+/// between the hip joints), metres, y-up world. Axes: anatomical, see Humanoid::node_from_segment.
+/// A fused segment moves with its parent.
+using BodyPose = PerSegment<Rigid>;
+
+/// Segments of `pose` as the rig's nodes have them.
+BodyPose segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose);
+
+/// The same with the free rolls chosen like a human body: the forearm takes the hand's twist, the trunk's bend
+/// is split 0.46/0.54/0.30, upper arm and thigh are rolled into the plane of elbow and knee, the shank takes
+/// 60 % of the toe-out. Positions are unchanged.
+BodyPose canonical_segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose);
+
+/// Poses the skeleton: `base`, with every segment turned and the pelvis moved by what takes `from` (the
+/// segments of `base`) to `to`. Nodes of no segment keep their local transform. Inverse of segments_of up to
+/// the rounding of sqrt(eps) for single-node chains and uniform scales.
+Pose pose_skeleton(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& base, const BodyPose& from,
+                   const BodyPose& to);
+
+/// "rest": as the file has it. "stand": natural standing, arms hanging. "guard": fists up, feet apart.
+enum class StartPose { rest, stand, guard };
+
+/// The start pose: facing and ground position of the reference pose, lowest sole point on the floor (y = 0).
+Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose kind);
+
+/// Moves the whole figure up or down so that its lowest foot stands on y = 0 (world).
+Pose stand_on_floor(const Character& character, const Humanoid& humanoid, const Pose& pose);
+
+}  // namespace ukemi
