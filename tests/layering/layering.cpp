@@ -1,0 +1,138 @@
+#include "layering/layering.h"
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <regex>
+#include <string_view>
+
+namespace ukemi {
+namespace {
+
+namespace fs = std::filesystem;
+
+// In the order of the pipeline.
+constexpr std::string_view kStages[] = {"base",     "load",   "humanoid", "body", "restrict", "simulate",
+                                        "resample", "export", "render",   "bake", "cli"};
+
+struct ThirdParty {
+  std::string_view prefix;               // of the header's name
+  std::vector<std::string_view> stages;  // that may include it; empty: all, headers too
+};
+
+const std::vector<ThirdParty>& third_parties() {
+  static const std::vector<ThirdParty> table = {
+      {"Eigen/", {}},
+      {"unsupported/Eigen/", {}},
+      {"fmt/", {}},
+      {"nlohmann/", {"load", "export", "bake"}},
+      {"toml++/", {"restrict", "bake"}},
+      {"assimp/", {"load"}},
+      {"draco/", {"load"}},
+      {"meshoptimizer", {"load"}},
+      {"ode/", {"simulate"}},
+      {"png.h", {"render"}},
+      {"webp/", {"render"}},
+      {"ft2build.h", {"render"}},
+      {"freetype", {"render"}},
+      {"stb", {"render"}},
+      {"GL/", {"render"}},
+      {"EGL/", {"render"}},
+      {"CLI/", {"cli"}},
+  };
+  return table;
+}
+
+constexpr std::string_view kSystemHeaders[] = {"dirent.h", "dlfcn.h",  "fcntl.h", "poll.h",    "pthread.h",
+                                               "sched.h",  "signal.h", "spawn.h", "termios.h", "unistd.h"};
+
+struct Include {
+  std::string name;
+  bool quoted = false;
+  int line = 0;
+};
+
+std::vector<Include> includes_of(const fs::path& file) {
+  static const std::regex pattern(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"].*)");
+  std::vector<Include> includes;
+  std::ifstream stream(file);
+  std::string text;
+  for (int line = 1; std::getline(stream, text); ++line) {
+    std::smatch match;
+    if (std::regex_match(text, match, pattern)) includes.push_back({match[2], match[1] == "\"", line});
+  }
+  return includes;
+}
+
+std::optional<std::size_t> rank_of(std::string_view stage) {
+  const auto found = std::find(std::begin(kStages), std::end(kStages), stage);
+  if (found == std::end(kStages)) return std::nullopt;
+  return static_cast<std::size_t>(found - std::begin(kStages));
+}
+
+bool is_standard_or_system(const std::string& header) {
+  if (header.starts_with("sys/")) return true;
+  if (std::find(std::begin(kSystemHeaders), std::end(kSystemHeaders), header) != std::end(kSystemHeaders))
+    return true;
+  return header.find_first_of("./") == std::string::npos;
+}
+
+/// What is wrong with `include` in a file of `stage`, or nothing.
+std::optional<std::string> violation(const fs::path& source, const std::string& stage, bool is_header,
+                                     const Include& include) {
+  for (const ThirdParty& party : third_parties()) {
+    if (!include.name.starts_with(party.prefix)) continue;
+    if (party.stages.empty()) return std::nullopt;
+    if (std::find(party.stages.begin(), party.stages.end(), stage) == party.stages.end())
+      return stage + " must not include " + include.name;
+    if (is_header) return "a header must not include " + include.name;
+    return std::nullopt;
+  }
+  if (!include.quoted) {
+    if (is_standard_or_system(include.name)) return std::nullopt;
+    return "unknown header " + include.name;
+  }
+  const std::string target = include.name.substr(0, include.name.find('/'));
+  const std::optional<std::size_t> target_rank = rank_of(target);
+  if (!target_rank) return "name " + include.name + " by its stage's folder";
+  if (!fs::exists(source / include.name)) return include.name + " does not exist";
+  const bool siblings =
+      (stage == "export" && target == "render") || (stage == "render" && target == "export");
+  if (*target_rank > *rank_of(stage) || siblings) return stage + " must not include " + include.name;
+  return std::nullopt;
+}
+
+void check_file(const fs::path& source, const fs::path& file, LayeringReport& report) {
+  const fs::path relative = fs::relative(file, source);
+  const std::string extension = file.extension().string();
+  const std::string stage = relative.begin()->string();
+  if (extension == ".txt" || extension == ".md" || extension == ".in") return;
+  if (extension != ".h" && extension != ".cpp") {
+    report.violations.push_back(relative.string() + ": is neither .h nor .cpp");
+    return;
+  }
+  if (!rank_of(stage)) {
+    report.violations.push_back(relative.string() + ": " + stage + " is not a known stage");
+    return;
+  }
+  ++report.files;
+  for (const Include& include : includes_of(file)) {
+    ++report.includes;
+    if (const auto what = violation(source, stage, extension == ".h", include))
+      report.violations.push_back(relative.string() + ":" + std::to_string(include.line) + ": " + *what);
+  }
+}
+
+}  // namespace
+
+LayeringReport check_layering(const fs::path& source) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  LayeringReport report;
+  for (const fs::path& file : files) check_file(source, file, report);
+  return report;
+}
+
+}  // namespace ukemi

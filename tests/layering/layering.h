@@ -1,0 +1,25 @@
+// Who may include what: the rules of src/README.md, checked over a source tree.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ukemi {
+
+struct LayeringReport {
+  int files = 0;                        // .h and .cpp files read
+  int includes = 0;                     // #include lines looked at
+  std::vector<std::string> violations;  // "stage/file:line: what"
+};
+
+/// Checks every .h and .cpp file below `source` (the folder that holds the stages' folders).
+/// 1. A stage includes itself and earlier stages only; export and render never include each other.
+/// 2. A third party's header appears only in the .cpp files of the stages that may use it; Eigen and fmt
+/// anywhere.
+/// 3. Project headers are named by their folder and exist; every other header is the standard's or the
+/// system's.
+/// 4. Every folder is a known stage and every source file is a .h or a .cpp.
+LayeringReport check_layering(const std::filesystem::path& source);
+
+}  // namespace ukemi

@@ -1,0 +1,90 @@
+#include "layering/layering.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace ukemi {
+namespace {
+
+namespace fs = std::filesystem;
+using Strings = std::vector<std::string>;
+
+/// A source tree in a folder of its own, removed at the end.
+class Tree {
+ public:
+  Tree() {
+    std::string name = (fs::temp_directory_path() / "ukemi_layering_XXXXXX").string();
+    root_ = mkdtemp(name.data());
+  }
+  ~Tree() { fs::remove_all(root_); }
+  void add(const std::string& file, const std::string& text) const {
+    fs::create_directories((root_ / file).parent_path());
+    std::ofstream(root_ / file) << text;
+  }
+  std::vector<std::string> violations() const { return check_layering(root_).violations; }
+
+ private:
+  fs::path root_;
+};
+
+TEST(Layering, HoldsInTheWholeSourceTree) {
+  const LayeringReport report = check_layering(UKEMI_SOURCE_FOLDER);
+  EXPECT_EQ(report.violations, Strings{});
+  EXPECT_GT(report.files, 20);
+  EXPECT_GT(report.includes, 100);
+}
+
+TEST(Layering, ReportsALaterStageByFileAndLine) {
+  const Tree tree;
+  tree.add("base/math.h", "#pragma once\n\n#include <Eigen/Core>\n");
+  tree.add("simulate/simulate.h", "#include \"base/math.h\"\n");
+  tree.add("body/body.cpp", "// body\n#include <vector>\n#include \"simulate/simulate.h\"\n");
+  EXPECT_EQ(tree.violations(), (Strings{"body/body.cpp:3: body must not include simulate/simulate.h"}));
+}
+
+TEST(Layering, KeepsExportAndRenderApart) {
+  const Tree tree;
+  tree.add("export/export.h", "#include \"render/render.h\"\n");
+  tree.add("render/render.h", "#include \"export/export.h\"\n");
+  EXPECT_EQ(tree.violations(), (Strings{"export/export.h:1: export must not include render/render.h",
+                                        "render/render.h:1: render must not include export/export.h"}));
+}
+
+TEST(Layering, ReportsAThirdPartyOutsideItsStageOrInAHeader) {
+  const Tree tree;
+  tree.add("body/body.cpp",
+           "  #  include <ode/ode.h>\n#include \"assimp/scene.h\"\n#include <fmt/format.h>\n");
+  tree.add("bake/options.cpp", "#include <CLI/CLI.hpp>\n");
+  tree.add("cli/main.cpp", "#include <CLI/CLI.hpp>\n#include <nlohmann/json.hpp>\n");
+  tree.add("simulate/world.h", "#include <ode/ode.h>\n");
+  tree.add("simulate/world.cpp", "#include <ode/ode.h>\n");
+  EXPECT_EQ(tree.violations(), (Strings{"bake/options.cpp:1: bake must not include CLI/CLI.hpp",
+                                        "body/body.cpp:1: body must not include ode/ode.h",
+                                        "body/body.cpp:2: body must not include assimp/scene.h",
+                                        "cli/main.cpp:2: cli must not include nlohmann/json.hpp",
+                                        "simulate/world.h:1: a header must not include ode/ode.h"}));
+}
+
+TEST(Layering, ReportsUnknownHeadersFoldersAndFiles) {
+  const Tree tree;
+  tree.add("base/math.h", "#include \"result.h\"\n#include \"base/gone.h\"\n#include <boost/any.hpp>\n");
+  tree.add("base/files.cpp", "#include <sys/stat.h>\n#include <unistd.h>\n#include <cmath>\n");
+  tree.add("helpers/text.h", "");
+  tree.add("load/read.hpp", "");
+  EXPECT_THAT(
+      tree.violations(),
+      ElementsAre("base/math.h:1: name result.h by its stage's folder",
+                  "base/math.h:2: base/gone.h does not exist", "base/math.h:3: unknown header boost/any.hpp",
+                  "helpers/text.h: helpers is not a known stage", "load/read.hpp: is neither .h nor .cpp"));
+}
+
+TEST(Layering, CountsNothingInAnEmptyTree) {
+  const Tree tree;
+  tree.add("base/README.md", "nothing");
+  EXPECT_EQ(tree.violations(), Strings{});
+}
+
+}  // namespace
+}  // namespace ukemi
