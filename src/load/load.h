@@ -23,7 +23,8 @@ Result<Character> load_character(const std::filesystem::path& path, const LoadOp
                                  Diagnostics& diagnostics);
 
 /// The readers on bytes; `path` names the file in errors and resolves relative URIs.
-Result<Character> read_bvh(std::string_view text, const std::filesystem::path& path, Diagnostics& diagnostics);
+Result<Character> read_bvh(std::string_view text, const std::filesystem::path& path,
+                           Diagnostics& diagnostics);
 Result<Character> read_gltf(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
                             Diagnostics& diagnostics);
 /// FBX, DAE and whatever else assimp reads; the glTF document is written from its scene.
