@@ -15,8 +15,7 @@ Eigen::Vector4d key_value(const Track& track, std::size_t key, std::size_t part)
 
 Quat as_rotation(const Eigen::Vector4d& v) {
   const double length = v.norm();
-  return length > 0.0 ? Quat(v[3] / length, v[0] / length, v[1] / length, v[2] / length)
-                      : Quat::Identity();
+  return length > 0.0 ? Quat(v[3] / length, v[0] / length, v[1] / length, v[2] / length) : Quat::Identity();
 }
 
 Eigen::Vector4d interpolate(const Track& track, std::size_t key, double u) {

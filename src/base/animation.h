@@ -51,9 +51,7 @@ struct Clip {
   std::vector<Pose> frames;  // each with one local transform per node, file units
   std::vector<Mark> marks;
 
-  double duration_s() const {
-    return frames.empty() ? 0.0 : static_cast<double>(frames.size() - 1) / fps;
-  }
+  double duration_s() const { return frames.empty() ? 0.0 : static_cast<double>(frames.size() - 1) / fps; }
 };
 
 /// The animation sampled at `fps` from its first key on.

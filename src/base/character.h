@@ -63,10 +63,10 @@ enum class BvhChannel { x_position, y_position, z_position, x_rotation, y_rotati
 
 /// What a BVH needs to be written back as it was. Joint i is node i of the skeleton.
 struct BvhSource {
-  std::vector<std::vector<BvhChannel>> channels;      // per joint
-  std::vector<std::optional<Vec3>> end_site;          // per joint: offset of its End Site
+  std::vector<std::vector<BvhChannel>> channels;  // per joint
+  std::vector<std::optional<Vec3>> end_site;      // per joint: offset of its End Site
   double frame_time_s = 0.0;
-  std::vector<std::vector<double>> frames;            // raw rows, file units and degrees
+  std::vector<std::vector<double>> frames;  // raw rows, file units and degrees
 };
 
 enum class SourceFormat { gltf, bvh, assimp };
@@ -82,11 +82,11 @@ struct Character {
   std::vector<Skin> skins;
   std::vector<Material> materials;
   std::vector<Image> images;
-  GltfDocument document;                 // gltf: the file's; bvh, assimp: written by the loader
-  std::optional<BvhSource> bvh;          // where the file is a BVH
+  GltfDocument document;                               // gltf: the file's; bvh, assimp: written by the loader
+  std::optional<BvhSource> bvh;                        // where the file is a BVH
   std::vector<std::pair<std::string, int>> vrm_bones;  // VRM human bone name, node
-  std::optional<double> metres_per_unit;  // where the file states its unit (FBX, DAE)
-  std::optional<Quat> yup_from_file;      // where the file states its up axis (FBX, DAE)
+  std::optional<double> metres_per_unit;               // where the file states its unit (FBX, DAE)
+  std::optional<Quat> yup_from_file;                   // where the file states its up axis (FBX, DAE)
 };
 
 }  // namespace ukemi

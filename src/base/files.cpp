@@ -17,14 +17,20 @@ Error input_error(const fs::path& path, std::string what, std::string fix) {
 }
 
 Error output_error(const fs::path& path, const std::string& what) {
-  return {ErrorKind::output, path.string(), 0, 0, "", "cannot write: " + what,
+  return {ErrorKind::output,
+          path.string(),
+          0,
+          0,
+          "",
+          "cannot write: " + what,
           "choose a folder that exists, has space and that you may write to"};
 }
 
 /// Closes and, unless released, removes the temporary file.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(std::string pattern) : path_(std::move(pattern)), fd_(mkostemp(path_.data(), O_CLOEXEC)) {}
+  explicit TemporaryFile(std::string pattern)
+      : path_(std::move(pattern)), fd_(mkostemp(path_.data(), O_CLOEXEC)) {}
   ~TemporaryFile() {
     if (fd_ >= 0) close(fd_);
     if (created_ && !released_) unlink(path_.c_str());
@@ -68,15 +74,19 @@ class TemporaryFile {
 Result<std::vector<std::uint8_t>> read_file(const fs::path& path, std::size_t max_bytes) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0)
-    return input_error(path, std::string("cannot read: ") + std::strerror(errno), "check the file's name and folder");
+    return input_error(path, std::string("cannot read: ") + std::strerror(errno),
+                       "check the file's name and folder");
   if (!S_ISREG(info.st_mode))
-    return input_error(path, S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file", "name a file");
+    return input_error(path, S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file",
+                       "name a file");
   if (static_cast<std::size_t>(info.st_size) > max_bytes)
-    return input_error(path, "has " + std::to_string(info.st_size) + " bytes; the limit is " + std::to_string(max_bytes),
-                       "use a smaller file");
+    return input_error(
+        path, "has " + std::to_string(info.st_size) + " bytes; the limit is " + std::to_string(max_bytes),
+        "use a smaller file");
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0)
-    return input_error(path, std::string("cannot read: ") + std::strerror(errno), "check the file's permissions");
+    return input_error(path, std::string("cannot read: ") + std::strerror(errno),
+                       "check the file's permissions");
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(info.st_size));
   std::size_t done = 0;
   while (done < bytes.size()) {
@@ -86,7 +96,8 @@ Result<std::vector<std::uint8_t>> read_file(const fs::path& path, std::size_t ma
     done += static_cast<std::size_t>(n);
   }
   close(fd);
-  if (done != bytes.size()) return input_error(path, "cannot read the whole file", "copy it to another disk and try again");
+  if (done != bytes.size())
+    return input_error(path, "cannot read the whole file", "copy it to another disk and try again");
   return bytes;
 }
 
@@ -95,7 +106,8 @@ Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
   if (stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
     return output_error(path, S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file");
   TemporaryFile file(path.string() + ".XXXXXX");
-  if (!file.ok() || !file.write_all(bytes) || !file.finish_as(path)) return output_error(path, std::strerror(errno));
+  if (!file.ok() || !file.write_all(bytes) || !file.finish_as(path))
+    return output_error(path, std::strerror(errno));
   return Done{};
 }
 
@@ -112,7 +124,12 @@ Result<fs::path> find_asset(const fs::path& relative) {
   folders.emplace_back(UKEMI_SOURCE_ASSETS);
   for (const fs::path& folder : folders)
     if (fs::exists(folder / relative, error)) return folder / relative;
-  return Error{ErrorKind::input, relative.string(), 0, 0, "", "the program's own file is missing",
+  return Error{ErrorKind::input,
+               relative.string(),
+               0,
+               0,
+               "",
+               "the program's own file is missing",
                "set UKEMI_ASSETS to the project's assets folder, or install again"};
 }
 

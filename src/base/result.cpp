@@ -32,9 +32,8 @@ int exit_status(ErrorKind kind) {
 }
 
 void Diagnostics::warn(std::string subject, std::string what) {
-  const bool known = std::any_of(warnings_.begin(), warnings_.end(), [&](const Warning& w) {
-    return w.subject == subject && w.what == what;
-  });
+  const bool known = std::any_of(warnings_.begin(), warnings_.end(),
+                                 [&](const Warning& w) { return w.subject == subject && w.what == what; });
   if (!known) warnings_.push_back({std::move(subject), std::move(what)});
 }
 

@@ -22,12 +22,12 @@ enum class ErrorKind {
 /// An expected failure. Empty or zero fields do not apply.
 struct Error {
   ErrorKind kind = ErrorKind::internal;
-  std::string file;  // as the user wrote it
-  int line = 0;      // 1-based
-  int column = 0;    // 1-based
-  std::string joint; // joint, segment or node
-  std::string what;  // one sentence without a full stop: what is wrong
-  std::string fix;   // one sentence without a full stop: what to do
+  std::string file;   // as the user wrote it
+  int line = 0;       // 1-based
+  int column = 0;     // 1-based
+  std::string joint;  // joint, segment or node
+  std::string what;   // one sentence without a full stop: what is wrong
+  std::string fix;    // one sentence without a full stop: what to do
 
   /// "file:line:column: joint 'X': what"
   std::string message() const;

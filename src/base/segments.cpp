@@ -4,13 +4,13 @@ namespace ukemi {
 namespace {
 
 constexpr PerSegment<std::string_view> kSegmentNames = {
-    "pelvis",     "abdomen",    "chest",     "head",   "clavicle_l", "upperarm_l",
-    "forearm_l",  "hand_l",     "clavicle_r", "upperarm_r", "forearm_r", "hand_r",
-    "thigh_l",    "shank_l",    "foot_l",    "thigh_r", "shank_r",    "foot_r"};
+    "pelvis",    "abdomen", "chest",      "head",       "clavicle_l", "upperarm_l",
+    "forearm_l", "hand_l",  "clavicle_r", "upperarm_r", "forearm_r",  "hand_r",
+    "thigh_l",   "shank_l", "foot_l",     "thigh_r",    "shank_r",    "foot_r"};
 constexpr PerJoint<std::string_view> kJointNames = {
-    "spine",      "chest",   "neck",    "clavicle_l", "shoulder_l", "elbow_l",
-    "wrist_l",    "clavicle_r", "shoulder_r", "elbow_r", "wrist_r",    "hip_l",
-    "knee_l",     "ankle_l", "hip_r",   "knee_r",     "ankle_r"};
+    "spine",   "chest",      "neck",       "clavicle_l", "shoulder_l", "elbow_l",
+    "wrist_l", "clavicle_r", "shoulder_r", "elbow_r",    "wrist_r",    "hip_l",
+    "knee_l",  "ankle_l",    "hip_r",      "knee_r",     "ankle_r"};
 constexpr PerSegment<int> kParents = {0, 0, 1, 2, 2, 4, 5, 6, 2, 8, 9, 10, 0, 12, 13, 0, 15, 16};
 
 int mirrored_segment(int s) {

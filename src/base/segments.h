@@ -9,21 +9,46 @@ namespace ukemi {
 
 /// Parents before children. Every segment but the pelvis hangs on exactly one joint.
 enum class Segment : int {
-  pelvis, abdomen, chest, head,
-  clavicle_l, upperarm_l, forearm_l, hand_l,
-  clavicle_r, upperarm_r, forearm_r, hand_r,
-  thigh_l, shank_l, foot_l,
-  thigh_r, shank_r, foot_r,
+  pelvis,
+  abdomen,
+  chest,
+  head,
+  clavicle_l,
+  upperarm_l,
+  forearm_l,
+  hand_l,
+  clavicle_r,
+  upperarm_r,
+  forearm_r,
+  hand_r,
+  thigh_l,
+  shank_l,
+  foot_l,
+  thigh_r,
+  shank_r,
+  foot_r,
 };
 inline constexpr int kSegmentCount = 18;
 
 /// Joint j is the one above segment j + 1.
 enum class Joint : int {
-  spine, chest, neck,
-  clavicle_l, shoulder_l, elbow_l, wrist_l,
-  clavicle_r, shoulder_r, elbow_r, wrist_r,
-  hip_l, knee_l, ankle_l,
-  hip_r, knee_r, ankle_r,
+  spine,
+  chest,
+  neck,
+  clavicle_l,
+  shoulder_l,
+  elbow_l,
+  wrist_l,
+  clavicle_r,
+  shoulder_r,
+  elbow_r,
+  wrist_r,
+  hip_l,
+  knee_l,
+  ankle_l,
+  hip_r,
+  knee_r,
+  ankle_r,
 };
 inline constexpr int kJointCount = 17;
 

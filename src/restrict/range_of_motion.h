@@ -1,5 +1,5 @@
-// A joint's rotation as (a_y, a_z, alpha) and the range it may take: a polygon in (a_y, a_z), an interval in alpha
-// (Era et al., section 2.2 and 4.1; the chart is the swing rotation vector, see swing_twist).
+// A joint's rotation as (a_y, a_z, alpha) and the range it may take: a polygon in (a_y, a_z), an interval in
+// alpha (Era et al., section 2.2 and 4.1; the chart is the swing rotation vector, see swing_twist).
 #pragma once
 
 #include <filesystem>
@@ -22,15 +22,17 @@ struct SwingTwist {
 SwingTwist swing_twist(const Quat& joint_rotation);
 Quat joint_rotation(const SwingTwist& chart);
 
-/// Rows of the chart's rates in the joint frame: d(u . a)/dt = swing_row(u) . omega and d(alpha)/dt = twist_row . omega,
-/// with omega the child's angular velocity relative to the parent. swing_row is perpendicular to the link.
+/// Rows of the chart's rates in the joint frame: d(u . a)/dt = swing_row(u) . omega and d(alpha)/dt =
+/// twist_row . omega, with omega the child's angular velocity relative to the parent. swing_row is
+/// perpendicular to the link.
 Vec3 swing_row(const SwingTwist& chart, const Vec2& u);
 Vec3 twist_row(const SwingTwist& chart);
 
 /// Where a joint's angles are measured from.
 struct JointFrame {
-  Quat parent_from_joint = Quat::Identity();  // x: reference link direction; +a_z moves the link to y, +a_y to -z
-  Quat reference = Quat::Identity();          // rotation parent -> child that has a = 0, alpha = 0
+  Quat parent_from_joint =
+      Quat::Identity();               // x: reference link direction; +a_z moves the link to y, +a_y to -z
+  Quat reference = Quat::Identity();  // rotation parent -> child that has a = 0, alpha = 0
 
   /// Joint rotation Q of a parent -> child rotation (identity in the neutral pose).
   Quat joint_from_relative(const Quat& parent_from_child) const;
@@ -38,7 +40,8 @@ struct JointFrame {
 };
 
 /// Contract:
-/// 1. polygon: at least 3 corners (a_y, a_z), radians, counter-clockwise, star-shaped about the origin, the origin inside.
+/// 1. polygon: at least 3 corners (a_y, a_z), radians, counter-clockwise, star-shaped about the origin, the
+/// origin inside.
 /// 2. twist_min <= 0 <= twist_max.
 /// 3. no corner has |a| >= 170 degrees (the chart is singular at 180).
 struct JointRange {
@@ -58,16 +61,21 @@ double polygon_distance(const std::vector<Vec2>& polygon, const Vec2& point);
 /// Boundary point nearest to `point`.
 Vec2 nearest_boundary_point(const std::vector<Vec2>& polygon, const Vec2& point);
 
-/// How far outside, radians, 0 inside: the larger of the distance to the polygon and the twist's distance to its interval.
+/// How far outside, radians, 0 inside: the larger of the distance to the polygon and the twist's distance to
+/// its interval.
 double excess(const JointRange& range, const SwingTwist& chart);
 /// The chart inside the range that is nearest (polygon and twist each on their own).
 SwingTwist clamp_to_range(const JointRange& range, const SwingTwist& chart);
-/// Enlarges the range so that `chart` lies inside with `margin` (radians); returns by how much, radians.
+/// Enlarges the range so that `chart` lies inside with `margin` (radians); returns by how much, radians. An
+/// enlarged polygon is the convex hull of the old one and a circle about the chart.
 double widen_to_hold(JointRange& range, const SwingTwist& chart, double margin);
 
-/// A region by name (human, diamond, box: assets/limits/NAME.toml) or a TOML file, which may override single joints
-/// of a base region. Left joints are the mirror of right ones unless given. Errors: input, with file, line and joint
-/// (unknown joint, not star-shaped, reference outside, inverted interval, corner too far).
+/// The other side's range: reflection in the sagittal plane.
+JointRange mirrored(const JointRange& range);
+
+/// A region by name (human, diamond, box: assets/limits/NAME.toml) or a TOML file, which may override single
+/// joints of a base region. Left joints are the mirror of right ones unless given. Errors: input, with file,
+/// line and joint (unknown joint, not star-shaped, reference outside, inverted interval, corner too far).
 Result<RangeOfMotion> load_range_of_motion(const std::string& name_or_file);
 Result<RangeOfMotion> parse_range_of_motion(std::string_view toml, const std::string& file);
 

@@ -1,0 +1,251 @@
+// Regions as TOML: assets/limits/*.toml and the user's own.
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <array>
+#include <cmath>
+
+#include "base/files.h"
+#include "restrict/range_of_motion.h"
+
+namespace ukemi {
+namespace {
+
+constexpr std::size_t kMaxBytes = 1u << 20;
+constexpr double kMaxSwing = radians(170.0);
+constexpr double kUnitTolerance = 1e-3;  // table axes are rounded to four decimals
+
+/// Reads one region file; the first fault stops it.
+class RegionReader {
+ public:
+  explicit RegionReader(std::string file) : file_(std::move(file)) {}
+
+  Result<RangeOfMotion> read(const toml::table& table) {
+    range_.name = file_;
+    if (const auto base = table["base"].value<std::string>()) {
+      Result<RangeOfMotion> loaded = load_range_of_motion(*base);
+      if (!loaded) return loaded;
+      range_ = std::move(*loaded);
+      range_.name = file_;
+      given_.fill(true);
+    }
+    if (table["units"].value_or<std::string>("deg") != "deg")
+      return fail(table, "", "units must be \"deg\"", "write angles in degrees");
+    const toml::array* joints = table["joint"].as_array();
+    if (joints == nullptr)
+      return fail(table, "", "has no [[joint]] table",
+                  "give at least one joint, or use one of the regions human, diamond, box");
+    for (const toml::node& node : *joints) {
+      const toml::table* joint = node.as_table();
+      if (joint == nullptr)
+        return fail(node, "", "[[joint]] is not a table", "write [[joint]] and its keys below it");
+      if (Status status = read_joint(*joint); !status) return status.error();
+    }
+    return mirror_missing(table);
+  }
+
+ private:
+  Error fail(const toml::node& where, std::string joint, std::string what, std::string fix) const {
+    const toml::source_position at = where.source().begin;
+    return {ErrorKind::input,
+            file_,
+            static_cast<int>(at.line),
+            static_cast<int>(at.column),
+            std::move(joint),
+            std::move(what),
+            std::move(fix)};
+  }
+
+  Status read_joint(const toml::table& table) {
+    const std::string label = table["name"].value_or<std::string>("");
+    const std::optional<Joint> joint = joint_named(label);
+    if (!joint)
+      return fail(table, label, "unknown joint",
+                  "name one of spine chest neck clavicle_r shoulder_r elbow_r wrist_r hip_r knee_r ankle_r "
+                  "or their _l");
+    JointRange& range = range_.joints[index(*joint)];
+    if (Status s = read_frame(table, label, given_[index(*joint)], range.frame); !s) return s;
+    if (Status s = read_polygon(table, label, range); !s) return s;
+    if (Status s = read_twist(table, label, range); !s) return s;
+    given_[index(*joint)] = true;
+    return Done{};
+  }
+
+  std::optional<Vec3> direction(const toml::table& table, const char* key) const {
+    const toml::array* values = table[key].as_array();
+    if (values == nullptr || values->size() != 3) return std::nullopt;
+    Vec3 v;
+    for (int i = 0; i < 3; ++i) v[i] = (*values)[i].value_or<double>(NAN);
+    if (!v.allFinite() || std::abs(v.norm() - 1.0) > kUnitTolerance) return std::nullopt;
+    return v;
+  }
+
+  Status read_frame(const toml::table& table, const std::string& label, bool has_base,
+                    JointFrame& frame) const {
+    if (has_base && !table.contains("x_axis") && !table.contains("y_axis") &&
+        !table.contains("neutral_link_dir"))
+      return Done{};
+    const auto link = direction(table, "neutral_link_dir");
+    const auto x = direction(table, "x_axis");
+    const auto y = direction(table, "y_axis");
+    if (!link || !x || !y)
+      return fail(table, label, "needs neutral_link_dir, x_axis and y_axis: unit vectors [x, y, z]",
+                  "copy them from the joint's table in human.toml");
+    if (std::abs(x->dot(*y)) > kUnitTolerance)
+      return fail(table, label, "x_axis and y_axis are not perpendicular", "copy them from human.toml");
+    const Vec3 x_unit = x->normalized();
+    const Vec3 z_unit = x_unit.cross(*y).normalized();
+    Mat3 axes;
+    axes << x_unit, z_unit.cross(x_unit), z_unit;
+    frame.parent_from_joint = Quat(axes).normalized();
+    frame.reference = shortest_rotation(*link, x_unit).normalized();
+    return Done{};
+  }
+
+  Status read_polygon(const toml::table& table, const std::string& label, JointRange& range) const {
+    const toml::node* node = table.get("polygon");
+    if (node == nullptr && !range.polygon.empty()) return Done{};
+    const toml::array* corners = node == nullptr ? nullptr : node->as_array();
+    if (corners == nullptr || corners->size() < 3)
+      return fail(table, label, "needs a polygon of at least 3 corners [a_y, a_z]",
+                  "give corners in degrees, counter-clockwise");
+    std::vector<Vec2> polygon;
+    for (const toml::node& corner : *corners) {
+      const toml::array* pair = corner.as_array();
+      const Vec2 v = pair != nullptr && pair->size() == 2
+                         ? Vec2((*pair)[0].value_or<double>(NAN), (*pair)[1].value_or<double>(NAN))
+                         : Vec2(NAN, NAN);
+      if (!v.allFinite())
+        return fail(corner, label, "a corner is not a pair of numbers [a_y, a_z]", "give corners in degrees");
+      polygon.push_back(v * radians(1.0));
+      if (polygon.back().norm() > kMaxSwing)
+        return fail(
+            corner, label,
+            fmt::format("corner [{:g}, {:g}] lies more than 170 degrees from the reference", v.x(), v.y()),
+            "choose a reference direction in the middle of the range");
+    }
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2& a = polygon[i];
+      const Vec2& b = polygon[(i + 1) % polygon.size()];
+      if (a.x() * b.y() - a.y() * b.x() > 1e-9) continue;
+      return fail(
+          *corners->get((i + 1) % polygon.size()), label,
+          polygon_winds_backwards(polygon)
+              ? "the polygon is not counter-clockwise"
+              : "the polygon is not star-shaped about the reference, or the reference (0, 0) lies outside it",
+          "order the corners by their direction from (0, 0), counter-clockwise, with (0, 0) inside");
+    }
+    range.polygon = std::move(polygon);
+    return Done{};
+  }
+
+  static bool polygon_winds_backwards(const std::vector<Vec2>& polygon) {
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec2& a = polygon[i];
+      const Vec2& b = polygon[(i + 1) % polygon.size()];
+      if (a.x() * b.y() - a.y() * b.x() >= 0.0) return false;
+    }
+    return true;
+  }
+
+  Status read_twist(const toml::table& table, const std::string& label, JointRange& range) const {
+    const toml::node* node = table.get("alpha");
+    if (node == nullptr && range.twist_max > range.twist_min) return Done{};
+    const toml::array* pair = node == nullptr ? nullptr : node->as_array();
+    if (pair == nullptr || pair->size() != 2)
+      return fail(table, label, "needs alpha = [least, greatest], degrees", "give the interval of the twist");
+    const double low = (*pair)[0].value_or<double>(NAN);
+    const double high = (*pair)[1].value_or<double>(NAN);
+    if (!(low < high))
+      return fail(*node, label,
+                  fmt::format("the interval alpha = [{:g}, {:g}] is inverted or empty", low, high),
+                  "write the smaller angle first");
+    if (low > 0.0 || high < 0.0 || low < -180.0 || high > 180.0)
+      return fail(
+          *node, label,
+          fmt::format("the interval alpha = [{:g}, {:g}] must hold 0 and lie within -180 to 180", low, high),
+          "measure alpha from the reference");
+    range.twist_min = radians(low);
+    range.twist_max = radians(high);
+    return Done{};
+  }
+
+  Result<RangeOfMotion> mirror_missing(const toml::table& table) {
+    for (int j = 0; j < kJointCount; ++j) {
+      if (given_[j]) continue;
+      const Joint joint = joint_at(j);
+      const Joint other = mirror_of(joint);
+      if (other == joint || !given_[index(other)])
+        return fail(table, std::string(name(joint)), "is missing",
+                    "give the joint, its mirror, or base = \"human\"");
+      range_.joints[j] = mirrored(range_.joints[index(other)]);
+    }
+    return range_;
+  }
+
+  std::string file_;
+  RangeOfMotion range_;
+  PerJoint<bool> given_{};
+};
+
+}  // namespace
+
+// Reflection in the sagittal plane, z -> -z: x and y axes are reflected, z = x cross y, so (a_y, a_z, alpha)
+// of the mirrored pose is (-a_y, a_z, -alpha).
+JointRange mirrored(const JointRange& range) {
+  const auto reflect = [](Vec3 v) {
+    v.z() = -v.z();
+    return v;
+  };
+  const Mat3 axes = range.frame.parent_from_joint.toRotationMatrix();
+  Mat3 other;
+  other.col(0) = reflect(axes.col(0));
+  other.col(1) = reflect(axes.col(1));
+  other.col(2) = other.col(0).cross(other.col(1));
+  const Quat& r = range.frame.reference;
+  JointRange result;
+  result.frame.parent_from_joint = Quat(other).normalized();
+  result.frame.reference = Quat(r.w(), -r.x(), -r.y(), r.z());
+  for (auto corner = range.polygon.rbegin(); corner != range.polygon.rend(); ++corner)
+    result.polygon.emplace_back(-corner->x(), corner->y());
+  result.twist_min = -range.twist_max;
+  result.twist_max = -range.twist_min;
+  return result;
+}
+
+Result<RangeOfMotion> parse_range_of_motion(std::string_view text, const std::string& file) {
+  try {
+    return RegionReader(file).read(toml::parse(text, file));
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    return Error{ErrorKind::input,
+                 file,
+                 static_cast<int>(at.line),
+                 static_cast<int>(at.column),
+                 "",
+                 std::string(error.description()),
+                 "correct the TOML"};
+  }
+}
+
+Result<RangeOfMotion> load_range_of_motion(const std::string& name_or_file) {
+  const bool named = name_or_file == "human" || name_or_file == "diamond" || name_or_file == "box";
+  std::filesystem::path path = name_or_file;
+  if (named) {
+    Result<std::filesystem::path> asset = find_asset("limits/" + name_or_file + ".toml");
+    if (!asset) return asset.error();
+    path = *asset;
+  }
+  Result<std::vector<std::uint8_t>> bytes = read_file(path, kMaxBytes);
+  if (!bytes) {
+    Error error = bytes.error();
+    if (!named) error.fix = "name one of human, diamond, box, or a TOML file";
+    return error;
+  }
+  Result<RangeOfMotion> range =
+      parse_range_of_motion({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string());
+  if (range && named) range->name = name_or_file;
+  return range;
+}
+
+}  // namespace ukemi
