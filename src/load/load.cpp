@@ -27,7 +27,10 @@ Result<Character> load_character(const std::filesystem::path& path, const LoadOp
   const std::string extension = lower_extension(path);
   if (extension == ".bvh")
     return read_bvh({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path, diagnostics);
-  return load::input_error(path, 0, fmt::format("extension '{}' is not known", extension), "use a .bvh file");
+  if (extension == ".glb" || extension == ".gltf" || extension == ".vrm" || extension == ".vrma")
+    return read_gltf(*bytes, path, diagnostics);
+  return load::input_error(path, 0, fmt::format("extension '{}' is not known", extension),
+                           "use a .glb, .gltf, .vrm or .bvh file");
 }
 
 }  // namespace ukemi
