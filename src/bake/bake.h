@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bake/start.h"
 #include "base/character.h"
 #include "base/result.h"
 #include "body/body.h"
@@ -20,8 +23,8 @@ namespace ukemi {
 /// Everything that one bake may be told. Defaults are the program's.
 struct BakeSettings {
   // hit
-  std::string hit = "chest";        // segment
-  std::string from = "front";       // front back left right above or AZIMUTH[,ELEVATION] degrees
+  std::string hit = "chest";             // segment
+  std::string from = "front";            // front back left right above or AZIMUTH[,ELEVATION] degrees
   std::string preset = "medicine-ball";  // assets/impacts/presets.toml
   std::optional<double> ball_mass_kg, ball_speed_m_s, ball_radius_m;
   std::optional<std::string> scene;  // ball, push, impulse; from the preset unless given
@@ -37,41 +40,63 @@ struct BakeSettings {
   std::string region = "human";
   SimulationSettings simulation;
   // clip
-  bool until_rest = true;           // trim the still tail
-  double hold_s = 0.25;             // kept of it
+  bool until_rest = true;  // trim the still tail
+  double hold_s = 0.25;    // kept of it
   KeyReduction keys;
   // out
   std::vector<std::filesystem::path> outputs;
+  bool clip_only = false;  // glTF without the mesh
   std::optional<double> bvh_metres_per_unit;
-  std::filesystem::path sheet;      // empty: none
-  std::filesystem::path report;     // empty: none
+  std::filesystem::path sheet;   // empty: none
+  std::filesystem::path report;  // empty: none
 };
 
+/// Wall-clock seconds.
 struct BakeTimings {
   double load = 0, simulate = 0, resample = 0, export_ = 0, render = 0, total = 0;
 };
 
 /// What a bake made, before anything is written.
 struct BakeOutcome {
+  std::string reaction;  // "head_left": name of the clip
   Humanoid humanoid;
+  Start start;
   ArticulatedBody body;
-  RangeOfMotion range;              // in force: widened joints included
+  RangeOfMotion range;                            // in force: widened joints included
   std::vector<std::pair<Joint, double>> widened;  // radians
-  Pose start;
-  StartState state;
   Scene scene;
-  SimulationResult simulation;
-  Clip clip;
+  SimulationResult simulation;  // trajectory above a floor at y = 0, its still tail trimmed
+  Clip clip;                    // where the file places the figure
   ResampleError resample_error;
   BakeTimings timings_s;
 };
 
+/// What was written, and the report on it.
+struct BakedFile {
+  BakeOutcome outcome;
+  ReducedClip reduced;
+  std::string report;  // JSON, format 1
+};
+
+/// "mannequin" is the program's own character, everything else a file.
+Result<std::filesystem::path> character_path(const std::string& character);
+
+/// "ukemi 0.1.0"
+std::string generator();
+
+/// The name a bake's clip gets: SEGMENT_FROM.
+std::string reaction_name(const BakeSettings& settings);
+
+/// What is wrong with the settings, told without a character: words, numbers, outputs (extension, folder,
+/// twice the same). Errors: usage, output.
+Status check_settings(const std::string& character, const BakeSettings& settings);
+
 /// Runs the stages on a loaded character. Errors: those of the stages.
 Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics);
 
-/// Loads, bakes and writes every output; the report as JSON text (format 1). Nothing is written when anything fails
-/// before the first write.
-Result<std::string> bake_file(const std::filesystem::path& character, const BakeSettings& settings,
-                              Diagnostics& diagnostics);
+/// Loads, bakes and writes every output. `character` is a file or "mannequin". Nothing is written when
+/// anything fails before the first write.
+Result<BakedFile> bake_file(const std::string& character, const BakeSettings& settings,
+                            Diagnostics& diagnostics);
 
 }  // namespace ukemi

@@ -1,0 +1,224 @@
+#include "bake/bake.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "bake/impact.h"
+#include "bake/outputs.h"
+#include "bake/report.h"
+#include "bake/sheet.h"
+#include "base/files.h"
+#include "load/load.h"
+
+namespace ukemi {
+namespace fs = std::filesystem;
+namespace {
+
+const double kStartMargin = radians(3.0);  // how far inside its range every joint of the start pose lies
+
+/// Wall-clock time of the stages.
+class Stopwatch {
+ public:
+  /// Seconds since the last lap.
+  double lap() {
+    const auto now = Clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+  double total() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_ = start_;
+};
+
+/// Makes every joint of the start pose lie inside its range, by widening the range where it does not.
+void widen_for_start(BakeOutcome& outcome, Diagnostics& diagnostics) {
+  PerSegment<Quat> rotations;
+  for (int i = 0; i < kSegmentCount; ++i) rotations[i] = outcome.start.segments[i].rotation;
+  const PerJoint<SwingTwist> charts = charts_of(outcome.range, rotations);
+  for (int i = 0; i < kJointCount; ++i) {
+    if (outcome.body.joints[i].fused) continue;
+    const double outside = excess(outcome.range.joints[i], charts[i]);
+    const double widened = widen_to_hold(outcome.range.joints[i], charts[i], kStartMargin);
+    if (widened <= 0.0) continue;
+    outcome.widened.emplace_back(joint_at(i), widened);
+    if (outside > radians(1.0))
+      diagnostics.warn(
+          std::string(name(joint_at(i))),
+          fmt::format("starts {:.1f} degrees outside its range of motion; the range is widened by {:.1f} "
+                      "degrees for this bake",
+                      degrees(outside), degrees(widened)));
+  }
+}
+
+/// Keeps `hold_s` after the moment everything rests.
+void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_time_s, double hold_s) {
+  if (!rest_time_s) return;
+  const double end = std::ceil((*rest_time_s + hold_s) * trajectory.fps - 1e-9);
+  const auto frames = static_cast<std::size_t>(std::max(end, 0.0)) + 1;
+  if (frames >= trajectory.frames.size()) return;
+  trajectory.frames.resize(frames);
+  for (Prop& prop : trajectory.props)
+    if (prop.poses.size() > frames) prop.poses.resize(frames);
+}
+
+/// The clip on the character's own skeleton, where the file places the figure.
+void make_clip(const Character& character, BakeOutcome& outcome) {
+  Trajectory in_file_place = outcome.simulation.trajectory;
+  for (BodyPose& frame : in_file_place.frames)
+    for (Rigid& segment : frame) segment.translation.y() += outcome.start.floor_m;
+  outcome.clip = resample(character, outcome.humanoid, outcome.start.pose, outcome.start.segments,
+                          in_file_place, outcome.resample_error);
+  outcome.clip.name = outcome.reaction;
+  outcome.clip.marks = {{"start", 0.0}, {"impact", 0.0}};
+  const SimulationFigures& figures = outcome.simulation.figures;
+  const double end_s = outcome.clip.duration_s();
+  if (figures.first_ground_contact_s && *figures.first_ground_contact_s <= end_s)
+    outcome.clip.marks.push_back({"first_ground_contact", *figures.first_ground_contact_s});
+  if (figures.rest_time_s && *figures.rest_time_s <= end_s)
+    outcome.clip.marks.push_back({"rest", *figures.rest_time_s});
+}
+
+/// Everything up to the simulation's input.
+Status prepare(const Character& character, const BakeSettings& settings, BakeOutcome& outcome,
+               Diagnostics& diagnostics) {
+  outcome.reaction = reaction_name(settings);
+  auto humanoid = map_humanoid(character, settings.humanoid, diagnostics);
+  if (!humanoid) return humanoid.error();
+  outcome.humanoid = std::move(*humanoid);
+  auto start = start_of(character, outcome.humanoid, settings);
+  if (!start) return start.error();
+  outcome.start = std::move(*start);
+  auto body = build_body(character, outcome.humanoid, outcome.start.pose, outcome.start.segments,
+                         BodyOptions{settings.mass_kg.value_or(0.0), settings.sex}, diagnostics);
+  if (!body) return body.error();
+  outcome.body = std::move(*body);
+  auto range = load_range_of_motion(settings.region);
+  if (!range) return range.error();
+  outcome.range = std::move(*range);
+  widen_for_start(outcome, diagnostics);
+  auto scene = scene_of(settings, outcome.start.segments[index(Segment::pelvis)].rotation);
+  if (!scene) return scene.error();
+  outcome.scene = *scene;
+  return Done{};
+}
+
+/// Every output's bytes, before the first is written.
+struct Prepared {
+  fs::path path;
+  std::vector<std::uint8_t> bytes;
+};
+
+std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Character& character,
+                                               const BakeSettings& settings, const BakeOutcome& outcome,
+                                               const ReducedClip& reduced) {
+  const OutputFormat format = *output_format(path);
+  if (format == OutputFormat::bvh) {
+    BvhOptions options;
+    if (settings.bvh_metres_per_unit) options.metres_per_unit = *settings.bvh_metres_per_unit;
+    const auto text = write_bvh(character, outcome.humanoid, outcome.clip, options);
+    if (!text) return text.error();
+    return bytes_of(*text);
+  }
+  const GltfOptions options{settings.clip_only, ""};
+  if (format == OutputFormat::glb) return write_glb(character, outcome.humanoid, reduced, options);
+  const auto text = write_gltf(character, outcome.humanoid, reduced, options);
+  if (!text) return text.error();
+  return bytes_of(*text);
+}
+
+Result<std::vector<Prepared>> prepare_outputs(const Character& character, const BakeSettings& settings,
+                                              BakedFile& baked) {
+  Stopwatch watch;
+  std::vector<Prepared> prepared;
+  baked.reduced = reduce_keys(character.skeleton, baked.outcome.clip, baked.outcome.humanoid.world_from_file,
+                              settings.keys);
+  for (const fs::path& path : settings.outputs) {
+    auto bytes = output_bytes(path, character, settings, baked.outcome, baked.reduced);
+    if (!bytes) return bytes.error();
+    prepared.push_back({path, std::move(*bytes)});
+  }
+  baked.outcome.timings_s.export_ = watch.lap();
+  if (!settings.sheet.empty()) {
+    auto png = bake_sheet(character, settings, baked.outcome);
+    if (!png) return png.error();
+    prepared.push_back({settings.sheet, std::move(*png)});
+    baked.outcome.timings_s.render = watch.lap();
+  }
+  return prepared;
+}
+
+}  // namespace
+
+Result<fs::path> character_path(const std::string& character) {
+  if (character == "mannequin") return find_asset("characters/mannequin.glb");
+  return fs::path(character);
+}
+
+std::string generator() { return std::string("ukemi ") + UKEMI_VERSION; }
+
+std::string reaction_name(const BakeSettings& settings) {
+  std::string from = settings.from;
+  std::replace(from.begin(), from.end(), ',', '_');
+  return settings.hit + "_" + from;
+}
+
+Status check_settings(const std::string& character, const BakeSettings& settings) {
+  if (const Status status = check_scene(settings); !status) return status.error();
+  return check_outputs(character, settings);
+}
+
+Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics) {
+  BakeOutcome outcome;
+  Stopwatch watch;
+  if (const Status status = prepare(character, settings, outcome, diagnostics); !status)
+    return status.error();
+  outcome.timings_s.load = watch.lap();
+  auto simulation = simulate(outcome.body, outcome.range, outcome.start.state, outcome.scene,
+                             settings.simulation, diagnostics);
+  if (!simulation) return simulation.error();
+  outcome.simulation = std::move(*simulation);
+  if (settings.until_rest)
+    trim_still_tail(outcome.simulation.trajectory, outcome.simulation.figures.rest_time_s, settings.hold_s);
+  outcome.timings_s.simulate = watch.lap();
+  make_clip(character, outcome);
+  outcome.timings_s.resample = watch.lap();
+  outcome.timings_s.total = watch.total();
+  return outcome;
+}
+
+Result<BakedFile> bake_file(const std::string& character, const BakeSettings& settings,
+                            Diagnostics& diagnostics) {
+  if (const Status status = check_settings(character, settings); !status) return status.error();
+  Stopwatch watch;
+  const auto path = character_path(character);
+  if (!path) return path.error();
+  const auto loaded = load_character(*path, LoadOptions{}, diagnostics);
+  if (!loaded) return loaded.error();
+  const double load_s = watch.lap();
+  auto outcome = bake(*loaded, settings, diagnostics);
+  if (!outcome) return outcome.error();
+  BakedFile baked{std::move(*outcome), {}, {}};
+  baked.outcome.timings_s.load += load_s;
+  const auto prepared = prepare_outputs(*loaded, settings, baked);
+  if (!prepared) return prepared.error();
+  watch.lap();
+  for (const Prepared& output : *prepared)
+    if (const Status status = write_file(output.path, output.bytes); !status) return status.error();
+  baked.outcome.timings_s.export_ += watch.lap();
+  baked.outcome.timings_s.total = watch.total();
+  baked.report = report_json(character, *loaded, settings, baked.outcome, baked.reduced, diagnostics);
+  if (!settings.report.empty())
+    if (const Status status = write_file(settings.report, baked.report); !status) return status.error();
+  return baked;
+}
+
+}  // namespace ukemi

@@ -1,0 +1,274 @@
+#include "bake/impact.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "bake/bake.h"
+#include "bake/nearest.h"
+#include "base/files.h"
+
+namespace ukemi {
+namespace {
+
+constexpr double kDefaultPushDuration = 0.2;  // s
+const std::vector<std::string> kSceneNames = {"ball", "push", "impulse"};
+const std::vector<std::string> kDirectionNames = {"front", "back", "left", "right", "above"};
+
+Error usage(std::string what, std::string fix) {
+  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+Error preset_error(const std::string& file, const toml::source_region& where, std::string what,
+                   std::string fix) {
+  return {ErrorKind::input,
+          file,
+          static_cast<int>(where.begin.line),
+          static_cast<int>(where.begin.column),
+          "",
+          std::move(what),
+          std::move(fix)};
+}
+
+/// Reads the keys of one preset table; the first error stays.
+class PresetReader {
+ public:
+  PresetReader(const std::string& file, std::string name, const toml::table& table)
+      : file_(file), table_(table) {
+    preset_.name = std::move(name);
+  }
+
+  Result<ImpactPreset> read() {
+    preset_.mass_kg = required("mass_kg");
+    preset_.speed_m_s = required("speed_m_s");
+    preset_.radius_m = required("radius_m");
+    preset_.impulse_n_s = optional("impulse_n_s");
+    preset_.force_n = optional("force_n");
+    preset_.duration_s = optional("duration_s");
+    read_scene();
+    if (const toml::node* node = table_.get("stylised")) {
+      if (const auto value = node->value_exact<bool>())
+        preset_.stylised = *value;
+      else
+        fail(*node, "'stylised' is not true or false", "write true or false");
+    }
+    refuse_unknown_keys();
+    if (error_) return *error_;
+    return preset_;
+  }
+
+ private:
+  void fail(const toml::node& node, const std::string& what, std::string fix) {
+    if (!error_)
+      error_ = preset_error(file_, node.source(), fmt::format("preset '{}': {}", preset_.name, what),
+                            std::move(fix));
+  }
+
+  std::optional<double> optional(std::string_view key) {
+    const toml::node* node = table_.get(key);
+    if (!node) return std::nullopt;
+    const auto value = node->value<double>();
+    if (value && std::isfinite(*value) && *value > 0.0) return value;
+    fail(*node, fmt::format("'{}' is not a number above 0", key), "write a number above 0");
+    return std::nullopt;
+  }
+
+  double required(std::string_view key) {
+    if (!table_.get(key))
+      fail(table_, fmt::format("'{}' is missing", key), fmt::format("add '{} = ...'", key));
+    return optional(key).value_or(0.0);
+  }
+
+  void read_scene() {
+    const toml::node* node = table_.get("scene");
+    if (!node) return;
+    const auto text = node->value_exact<std::string>();
+    auto scene = text ? parse_scene(*text)
+                      : Result<SceneKind>(usage("'scene' is not a word", "write scene = \"ball\""));
+    if (scene)
+      preset_.scene = *scene;
+    else
+      fail(*node, scene.error().what, scene.error().fix);
+  }
+
+  void refuse_unknown_keys() {
+    static const std::vector<std::string> known = {"mass_kg",     "speed_m_s",   "radius_m", "scene",
+                                                   "stylised",    "impulse_n_s", "force_n",  "duration_s",
+                                                   "description", "source"};
+    for (auto&& [key, node] : table_) {
+      const std::string text(key.str());
+      if (std::find(known.begin(), known.end(), text) == known.end())
+        fail(node, fmt::format("unknown key '{}'", text), suggestion(text, known));
+    }
+  }
+
+  const std::string& file_;
+  const toml::table& table_;
+  ImpactPreset preset_;
+  std::optional<Error> error_;
+};
+
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [parsed, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || parsed != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+Vec3 horizontal(const Vec3& v) { return {v.x(), 0.0, v.z()}; }
+
+/// Unit, horizontal.
+Vec3 forward_of(const Quat& world_from_pelvis) {
+  const Vec3 anterior = world_from_pelvis * Vec3::UnitX();
+  const Vec3 flat = horizontal(anterior);
+  if (flat.norm() > 0.2) return flat.normalized();
+  const Vec3 up = horizontal(world_from_pelvis * Vec3::UnitY());
+  return (anterior.y() < 0.0 ? up : Vec3(-up)).normalized();
+}
+
+Status check_range(std::string_view option, const std::optional<double>& value, double min, double max) {
+  if (!value || (*value >= min && *value <= max)) return Done{};
+  return usage(fmt::format("{}: {} is out of range", option, *value),
+               fmt::format("give a number from {} to {}", min, max));
+}
+
+Status check_ball(const BakeSettings& settings) {
+  for (const Status& status : {check_range("--ball-mass", settings.ball_mass_kg, 0.001, 10000.0),
+                               check_range("--ball-speed", settings.ball_speed_m_s, 0.01, 1000.0),
+                               check_range("--ball-radius", settings.ball_radius_m, 0.005, 5.0)})
+    if (!status) return status.error();
+  return Done{};
+}
+
+Result<ImpactPreset> preset_named(const std::string& text) {
+  const auto presets = load_presets();
+  if (!presets) return presets.error();
+  std::vector<std::string> names;
+  for (const ImpactPreset& preset : *presets) {
+    if (preset.name == text) return preset;
+    names.push_back(preset.name);
+  }
+  return usage(fmt::format("unknown preset '{}'", text), suggestion(text, names));
+}
+
+}  // namespace
+
+Result<std::vector<ImpactPreset>> load_presets() {
+  const auto path = find_asset("impacts/presets.toml");
+  if (!path) return path.error();
+  const auto bytes = read_file(*path, 1u << 20);
+  if (!bytes) return bytes.error();
+  return parse_presets(std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()),
+                       path->string());
+}
+
+Result<std::vector<ImpactPreset>> parse_presets(std::string_view toml, const std::string& file) {
+  try {
+    const toml::table document = toml::parse(toml, file);
+    std::vector<std::pair<toml::source_position, ImpactPreset>> found;
+    for (auto&& [key, node] : document) {
+      const toml::table* table = node.as_table();
+      if (!table)
+        return preset_error(file, node.source(), fmt::format("'{}' is not a preset", std::string(key.str())),
+                            "write the preset as a table, [name]");
+      auto preset = PresetReader(file, std::string(key.str()), *table).read();
+      if (!preset) return preset.error();
+      found.emplace_back(table->source().begin, *preset);
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<ImpactPreset> presets;
+    for (auto& entry : found) presets.push_back(std::move(entry.second));
+    return presets;
+  } catch (const toml::parse_error& error) {
+    return preset_error(file, error.source(), std::string(error.description()), "correct the TOML syntax");
+  }
+}
+
+Result<Direction> parse_direction(std::string_view text) {
+  constexpr double quarter = 0.5 * kPi;
+  const Direction words[] = {{0, 0}, {kPi, 0}, {quarter, 0}, {-quarter, 0}, {0, quarter}};
+  for (std::size_t i = 0; i < kDirectionNames.size(); ++i)
+    if (text == kDirectionNames[i]) return words[i];
+  const auto comma = text.find(',');
+  const auto azimuth = number(text.substr(0, comma));
+  const auto elevation = comma == text.npos ? std::optional(0.0) : number(text.substr(comma + 1));
+  const std::string what = fmt::format("'{}' is not a direction", text);
+  if (!azimuth || !elevation) {
+    const std::string near = nearest_word(text, kDirectionNames);
+    return usage(what, near.empty()
+                           ? "give front, back, left, right, above, or AZIMUTH[,ELEVATION] in degrees"
+                           : fmt::format("did you mean '{}'?", near));
+  }
+  if (std::abs(*azimuth) > 360.0 || std::abs(*elevation) > 90.0)
+    return usage(what + ": out of range",
+                 "give an azimuth from -360 to 360 and an elevation from -90 to 90 degrees");
+  return Direction{radians(*azimuth), radians(*elevation)};
+}
+
+Vec3 travel_direction(const Direction& from, const Quat& world_from_pelvis) {
+  const Vec3 forward = forward_of(world_from_pelvis);
+  const Vec3 left = Vec3::UnitY().cross(forward);
+  const Vec3 flat = std::cos(from.azimuth) * forward + std::sin(from.azimuth) * left;
+  const Vec3 origin = std::cos(from.elevation) * flat + std::sin(from.elevation) * Vec3::UnitY();
+  return -origin.normalized();
+}
+
+Result<Segment> parse_segment(std::string_view text) {
+  if (const auto segment = segment_named(text)) return *segment;
+  std::vector<std::string> names;
+  for (int i = 0; i < kSegmentCount; ++i) names.emplace_back(name(segment_at(i)));
+  return usage(fmt::format("unknown segment '{}'", text), suggestion(text, names));
+}
+
+Result<SceneKind> parse_scene(std::string_view text) {
+  for (const SceneKind scene : {SceneKind::ball, SceneKind::push, SceneKind::impulse})
+    if (name(scene) == text) return scene;
+  return usage(fmt::format("unknown scene '{}'", text), suggestion(text, kSceneNames));
+}
+
+std::string_view name(SceneKind scene) { return kSceneNames[static_cast<std::size_t>(scene)]; }
+
+Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelvis) {
+  if (const Status status = check_ball(settings); !status) return status.error();
+  const auto target = parse_segment(settings.hit);
+  if (!target) return target.error();
+  const auto from = parse_direction(settings.from);
+  if (!from) return from.error();
+  const auto preset = preset_named(settings.preset);
+  if (!preset) return preset.error();
+  const auto kind = settings.scene ? parse_scene(*settings.scene) : Result<SceneKind>(preset->scene);
+  if (!kind) return kind.error();
+
+  Scene scene;
+  scene.kind = *kind;
+  scene.target = *target;
+  scene.direction = travel_direction(*from, world_from_pelvis);
+  scene.ball_mass_kg = settings.ball_mass_kg.value_or(preset->mass_kg);
+  scene.ball_speed_m_s = settings.ball_speed_m_s.value_or(preset->speed_m_s);
+  scene.ball_radius_m = settings.ball_radius_m.value_or(preset->radius_m);
+  const double momentum = scene.ball_mass_kg * scene.ball_speed_m_s;
+  const bool own_ball = settings.ball_mass_kg || settings.ball_speed_m_s;
+  scene.impulse_n_s = own_ball ? momentum : preset->impulse_n_s.value_or(momentum);
+  scene.push_duration_s = preset->duration_s.value_or(kDefaultPushDuration);
+  scene.push_force_n =
+      own_ball || !preset->force_n ? scene.impulse_n_s / scene.push_duration_s : *preset->force_n;
+  return scene;
+}
+
+Status check_scene(const BakeSettings& settings) {
+  const auto scene = scene_of(settings, Quat::Identity());
+  if (!scene) return scene.error();
+  return Done{};
+}
+
+std::optional<std::string> preset_in_use(const BakeSettings& settings) {
+  if (settings.ball_mass_kg && settings.ball_speed_m_s && settings.ball_radius_m) return std::nullopt;
+  return settings.preset;
+}
+
+}  // namespace ukemi

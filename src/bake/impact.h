@@ -1,0 +1,65 @@
+// What hits: presets, directions, and the scene that they make.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/math.h"
+#include "base/result.h"
+#include "base/segments.h"
+#include "simulate/simulate.h"
+
+namespace ukemi {
+
+struct BakeSettings;
+
+/// One table of assets/impacts/presets.toml.
+struct ImpactPreset {
+  std::string name;
+  SceneKind scene = SceneKind::ball;
+  double mass_kg = 0.0;
+  double speed_m_s = 0.0;
+  double radius_m = 0.0;
+  bool stylised = false;  // stronger than the real thing, for the eye
+  std::optional<double> impulse_n_s;
+  std::optional<double> force_n;
+  std::optional<double> duration_s;
+};
+
+/// The presets that come with the program, in the file's order.
+Result<std::vector<ImpactPreset>> load_presets();
+/// Errors: input, with line and column (syntax, unknown or missing key, value that is not above 0).
+Result<std::vector<ImpactPreset>> parse_presets(std::string_view toml, const std::string& file);
+
+/// Where a blow comes from, seen from the character, radians.
+struct Direction {
+  double azimuth = 0.0;    // 0: from the front, pi/2: from the character's left
+  double elevation = 0.0;  // positive: from above
+};
+
+/// front, back, left, right, above, or AZIMUTH[,ELEVATION] in degrees (-360 to 360, -90 to 90). Errors:
+/// usage.
+Result<Direction> parse_direction(std::string_view text);
+
+/// Unit vector the blow travels along. Forward is the pelvis's anterior axis made horizontal; for a pelvis
+/// that lies on its front or back, the way its head or feet point.
+Vec3 travel_direction(const Direction& from, const Quat& world_from_pelvis);
+
+Result<Segment> parse_segment(std::string_view text);
+Result<SceneKind> parse_scene(std::string_view text);
+std::string_view name(SceneKind scene);
+
+/// The blow of a bake: the preset's numbers, replaced by what the settings give. A push or an impulse without
+/// numbers of its own carries the ball's momentum. Errors: usage (unknown segment, direction, preset or
+/// scene, value out of range), input (presets file).
+Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelvis);
+
+/// The same without a character: whether the words and numbers of the settings make a scene at all.
+Status check_scene(const BakeSettings& settings);
+
+/// The preset whose numbers are used, or nothing where the settings replace them all.
+std::optional<std::string> preset_in_use(const BakeSettings& settings);
+
+}  // namespace ukemi

@@ -1,0 +1,66 @@
+// What is in a file: skeleton, humanoid map, units, clips, and whether its poses are humanly possible.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/character.h"
+#include "base/result.h"
+#include "humanoid/humanoid.h"
+#include "restrict/range_of_motion.h"
+
+namespace ukemi {
+
+enum class Verdict { humanoid, not_humanoid, malformed };
+std::string_view name(Verdict verdict);  // "humanoid", "not-humanoid", "malformed"
+/// 0 humanoid, 1 not a humanoid, 2 malformed.
+int exit_status(Verdict verdict);
+
+/// How far poses lie outside the range of motion, over all joints that move.
+struct RomFigures {
+  double over_1deg_fraction = 0.0;
+  double over_5deg_fraction = 0.0;
+  double excess_max_deg = 0.0;
+  std::optional<Joint> worst_joint;
+};
+
+struct ClipInspection {
+  std::string name;
+  double duration_s = 0.0;
+  long frames = 0;
+  double fps = 0.0;               // the file's own rate, or the rate of its keys; 0 for a single key
+  std::optional<RomFigures> rom;  // of a humanoid
+};
+
+struct Inspection {
+  Verdict verdict = Verdict::malformed;
+  std::string reason;          // of the verdict
+  std::optional<Error> error;  // what loading or mapping answered
+  std::optional<Character> character;
+  std::optional<Humanoid> humanoid;
+  std::optional<RomFigures> rest;
+  std::vector<ClipInspection> clips;
+};
+
+struct InspectSettings {
+  HumanoidOptions humanoid;
+  std::string region = "human";
+};
+
+/// Frames and native rate of an animation: the file's, or the mean rate of its busiest track.
+double native_rate(const Animation& animation);
+
+RomFigures rom_figures(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,
+                       const std::vector<Pose>& poses);
+
+/// `file` may be "mannequin". A file that cannot be loaded is malformed, not an error. Errors: the region's.
+Result<Inspection> inspect(const std::string& file, const InspectSettings& settings,
+                           Diagnostics& diagnostics);
+
+/// `inspect --json`, format 1.
+std::string inspection_json(const Inspection& inspection, const Diagnostics& diagnostics);
+/// For people.
+std::string inspection_text(const std::string& file, const Inspection& inspection);
+
+}  // namespace ukemi

@@ -1,0 +1,83 @@
+#include "bake/outputs.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "bake/bake.h"
+
+namespace ukemi {
+namespace fs = std::filesystem;
+namespace {
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return extension;
+}
+
+Error usage(const fs::path& path, std::string what, std::string fix) {
+  return {ErrorKind::usage, path.string(), 0, 0, "", std::move(what), std::move(fix)};
+}
+
+Error cannot_write(const fs::path& path, const std::string& why, std::string fix) {
+  return {ErrorKind::output, path.string(), 0, 0, "", "cannot write: " + why, std::move(fix)};
+}
+
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+}
+
+}  // namespace
+
+std::optional<OutputFormat> output_format(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".glb") return OutputFormat::glb;
+  if (extension == ".gltf") return OutputFormat::gltf;
+  if (extension == ".bvh") return OutputFormat::bvh;
+  return std::nullopt;
+}
+
+Status check_writable(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return cannot_write(path, "is a directory", "name a file");
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error))
+    return cannot_write(path, fmt::format("there is no folder '{}'", folder.string()),
+                        "make the folder first");
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    return cannot_write(path, fmt::format("the folder '{}' may not be written to", folder.string()),
+                        "choose another folder, or change its permissions");
+  return Done{};
+}
+
+Status check_picture_name(const fs::path& path) {
+  if (lower_extension(path) == ".png") return Done{};
+  return usage(path, "unknown picture format", "let the name end in .png");
+}
+
+Status check_outputs(const std::string& character, const BakeSettings& settings) {
+  std::vector<fs::path> paths = settings.outputs;
+  for (const fs::path& path : settings.outputs)
+    if (!output_format(path))
+      return usage(path, "unknown output format", "let the name end in .glb, .gltf or .bvh");
+  if (!settings.sheet.empty()) {
+    if (const Status status = check_picture_name(settings.sheet); !status) return status.error();
+    paths.push_back(settings.sheet);
+  }
+  if (!settings.report.empty()) paths.push_back(settings.report);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (same_file(paths[i], character))
+      return usage(paths[i], "would overwrite the character", "choose another name for the output");
+    for (std::size_t k = 0; k < i; ++k)
+      if (same_file(paths[i], paths[k]))
+        return usage(paths[i], "is named twice as an output", "name each output once");
+    if (const Status status = check_writable(paths[i]); !status) return status.error();
+  }
+  return Done{};
+}
+
+}  // namespace ukemi

@@ -1,0 +1,256 @@
+#include "bake/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace ukemi {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Json numbers(const Quat& q) { return {q.x(), q.y(), q.z(), q.w()}; }
+
+Json settings_json(const BakeSettings& settings, const BakeOutcome& outcome) {
+  const SimulationSettings& simulation = settings.simulation;
+  Json json;
+  json["limits"] = name(simulation.limits);
+  json["region"] = outcome.range.name;
+  json["active"] = name(simulation.active);
+  json["rate"] = rate_name(simulation.fixed_hz);
+  json["duration_s"] = simulation.duration_s;
+  json["fps"] = simulation.fps;
+  json["seed"] = nullptr;  // nothing in a bake is random
+  const bool active = simulation.active != Active::off;
+  json["active_k_1_s"] = active ? Json(simulation.active_k) : Json(nullptr);
+  json["active_delay_s"] = active ? Json(simulation.active_delay_s) : Json(nullptr);
+  json["damping_1_s"] = simulation.damping;
+  json["pose"] = outcome.start.from_clip ? Json(nullptr) : Json(outcome.start.name);
+  json["clip"] = outcome.start.from_clip ? Json(outcome.start.name) : Json(nullptr);
+  json["at_s"] = outcome.start.from_clip ? Json(outcome.start.at_s) : Json(nullptr);
+  json["until_rest"] = settings.until_rest;
+  json["hold_s"] = settings.until_rest ? Json(settings.hold_s) : Json(nullptr);
+  json["keys"] = settings.keys.enabled ? "reduced" : "all";
+  json["key_error_mm"] = settings.keys.enabled ? Json(settings.keys.tolerance_m * 1000.0) : Json(nullptr);
+  return json;
+}
+
+Json frames_json(const Character& character, const BakeOutcome& outcome) {
+  const auto file_from_node = world_transforms(character.skeleton, outcome.start.pose);
+  Json json = Json::object();
+  for (int i = 0; i < kSegmentCount; ++i) {
+    const std::string segment(name(segment_at(i)));
+    const int node = outcome.humanoid.segments[i].node();
+    if (node < 0) {
+      json[segment] = nullptr;
+      continue;
+    }
+    const Quat world_from_node =
+        outcome.humanoid.world_from_file.rotation * rotation_part(file_from_node[node].linear());
+    const Quat segment_from_node = outcome.start.segments[i].rotation.conjugate() * world_from_node;
+    json[segment] = {{"node", character.skeleton.label(node)},
+                     {"segment_from_node", numbers(segment_from_node)}};
+  }
+  return json;
+}
+
+Json humanoid_json(const Character& character, const BakeOutcome& outcome) {
+  Json json;
+  json["height_m"] = outcome.humanoid.height_m;
+  json["mass_kg"] = outcome.body.mass_kg;
+  Json map = Json::object();
+  for (int i = 0; i < kSegmentCount; ++i) {
+    const int node = outcome.humanoid.segments[i].node();
+    map[std::string(name(segment_at(i)))] = node < 0 ? Json(nullptr) : Json(character.skeleton.label(node));
+  }
+  json["map"] = std::move(map);
+  json["frames"] = frames_json(character, outcome);
+  return json;
+}
+
+/// Distance of the joints of the clip's first frame from the pose it starts from.
+double position_jump(const Character& character, const BakeOutcome& outcome) {
+  const BodyPose first = segments_of(character.skeleton, outcome.humanoid, outcome.clip.frames.front());
+  double largest = 0.0;
+  for (int i = 0; i < kSegmentCount; ++i)
+    largest = std::max(largest, (first[i].translation - outcome.start.segments[i].translation).norm());
+  return largest;
+}
+
+/// Difference of the segments' velocities over the first frame from those of the clip, the hit segment left
+/// out.
+double velocity_jump(const BakeOutcome& outcome) {
+  const Trajectory& trajectory = outcome.simulation.trajectory;
+  double largest = 0.0;
+  for (int i = 0; i < kSegmentCount; ++i) {
+    if (segment_at(i) == outcome.scene.target) continue;
+    const Vec3 moved = trajectory.frames[1][i].translation - trajectory.frames[0][i].translation;
+    largest = std::max(largest, (moved * trajectory.fps - outcome.start.state.linear_velocity[i]).norm());
+  }
+  return largest;
+}
+
+Json impact_json(const Character& character, const BakeSettings& settings, const BakeOutcome& outcome) {
+  const Scene& scene = outcome.scene;
+  Json json;
+  json["segment"] = name(scene.target);
+  json["preset"] = or_null(preset_in_use(settings));
+  json["time_s"] = 0.0;
+  json["momentum_n_s"] = outcome.simulation.figures.momentum_n_s;
+  json["first_ground_contact_s"] = or_null(outcome.simulation.figures.first_ground_contact_s);
+  const bool from_clip = outcome.start.from_clip && outcome.clip.frames.size() > 1;
+  json["position_jump_m"] = from_clip ? Json(position_jump(character, outcome)) : Json(nullptr);
+  json["velocity_jump_m_s"] = from_clip ? Json(velocity_jump(outcome)) : Json(nullptr);
+  json["scene"] = name(scene.kind);
+  json["from"] = settings.from;
+  json["direction"] = numbers(scene.direction);
+  const bool ball = scene.kind == SceneKind::ball;
+  const bool push = scene.kind == SceneKind::push;
+  json["ball_mass_kg"] = ball ? Json(scene.ball_mass_kg) : Json(nullptr);
+  json["ball_speed_m_s"] = ball ? Json(scene.ball_speed_m_s) : Json(nullptr);
+  json["ball_radius_m"] = ball ? Json(scene.ball_radius_m) : Json(nullptr);
+  json["push_force_n"] = push ? Json(scene.push_force_n) : Json(nullptr);
+  json["push_duration_s"] = push ? Json(scene.push_duration_s) : Json(nullptr);
+  json["floor_height_m"] = outcome.start.floor_m;
+  return json;
+}
+
+Json limits_json(const BakeOutcome& outcome) {
+  const LimitFigures& figures = outcome.simulation.limits;
+  Json json;
+  json["samples"] = figures.samples;
+  json["over_1deg"] = figures.over_1deg;
+  json["excess_p999_deg"] = figures.excess_p999_deg;
+  json["excess_max_deg"] = figures.excess_max_deg;
+  json["worst_joint"] = figures.worst_joint ? Json(name(*figures.worst_joint)) : Json(nullptr);
+  json["excess_projected_max_deg"] =
+      figures.projected ? Json(figures.excess_projected_max_deg) : Json(nullptr);
+  json["projected"] = figures.projected;
+  json["widened_deg"] = Json::object();
+  for (const auto& [joint, angle] : outcome.widened)
+    json["widened_deg"][std::string(name(joint))] = degrees(angle);
+  return json;
+}
+
+Json simulation_json(const SimulationFigures& figures) {
+  Json json;
+  json["steps"] = figures.steps;
+  json["rejected_steps"] = figures.rejected_steps;
+  json["joint_separation_max_m"] = figures.joint_separation_max_m;
+  json["energy_gain_max_j"] = figures.energy_gain_max_j;
+  json["floor_penetration_max_m"] = figures.floor_penetration_max_m;
+  json["self_penetration_max_m"] = figures.self_penetration_max_m;
+  json["rest_time_s"] = or_null(figures.rest_time_s);
+  json["jitter_rad_s"] = figures.jitter_rad_s;
+  json["hash"] = figures.hash;
+  json["angular_momentum_mean_kg_m2_s"] = figures.angular_momentum_mean_kg_m2_s;
+  json["airborne_mean_s"] = figures.airborne_mean_s;
+  return json;
+}
+
+Json clip_json(const BakeSettings& settings, const BakeOutcome& outcome, const ReducedClip& reduced) {
+  Json json;
+  json["frames"] = outcome.clip.frames.size();
+  json["resample_position_max_m"] = outcome.resample_error.position_max_m;
+  json["resample_rotation_max_deg"] = outcome.resample_error.rotation_max_deg;
+  json["keys"] = reduced.keys;
+  json["keys_error_max_m"] = reduced.error_m;
+  json["jerk_max_deg_s3"] = largest_jerk_deg_s3(outcome.clip);
+  json["outputs"] = Json::array();
+  for (const auto& output : settings.outputs) json["outputs"].push_back(output.string());
+  json["name"] = outcome.clip.name;
+  json["duration_s"] = outcome.clip.duration_s();
+  return json;
+}
+
+Json timings_json(const BakeTimings& timings, double clip_duration_s) {
+  Json json;
+  json["load"] = timings.load;
+  json["simulate"] = timings.simulate;
+  json["resample"] = timings.resample;
+  json["export"] = timings.export_;
+  json["render"] = timings.render;
+  json["total"] = timings.total;
+  json["realtime_factor"] = timings.total > 0.0 ? Json(clip_duration_s / timings.total) : Json(nullptr);
+  return json;
+}
+
+}  // namespace
+
+std::string report_json(const std::string& character, const Character& loaded, const BakeSettings& settings,
+                        const BakeOutcome& outcome, const ReducedClip& reduced,
+                        const Diagnostics& diagnostics) {
+  Json json;
+  json["format"] = 1;
+  json["generator"] = generator();
+  json["character"] = character;
+  json["reaction"] = outcome.reaction;
+  json["settings"] = settings_json(settings, outcome);
+  json["humanoid"] = humanoid_json(loaded, outcome);
+  json["impact"] = impact_json(loaded, settings, outcome);
+  json["limits"] = limits_json(outcome);
+  json["simulation"] = simulation_json(outcome.simulation.figures);
+  json["clip"] = clip_json(settings, outcome, reduced);
+  json["timings_s"] = timings_json(outcome.timings_s, outcome.clip.duration_s());
+  json["warnings"] = Json::array();
+  for (const Warning& warning : diagnostics.warnings())
+    json["warnings"].push_back(warning.subject.empty() ? warning.what
+                                                       : warning.subject + ": " + warning.what);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+double largest_jerk_deg_s3(const Clip& clip) {
+  const auto angular_velocity = [&](std::size_t frame, std::size_t node) -> Vec3 {
+    const Quat& from = clip.frames[frame][node].rotation;
+    return log_rotation(from.conjugate() * clip.frames[frame + 1][node].rotation) * clip.fps;
+  };
+  double largest = 0.0;
+  for (std::size_t f = 0; f + 3 < clip.frames.size(); ++f)
+    for (std::size_t n = 0; n < clip.frames[f].size(); ++n) {
+      const Vec3 jerk =
+          (angular_velocity(f + 2, n) - 2.0 * angular_velocity(f + 1, n) + angular_velocity(f, n));
+      largest = std::max(largest, jerk.norm() * clip.fps * clip.fps);
+    }
+  return degrees(largest);
+}
+
+std::string_view name(Limits limits) {
+  switch (limits) {
+    case Limits::edges:
+      return "edges";
+    case Limits::segments:
+      return "segments";
+    case Limits::segments_euler:
+      return "segments-euler";
+    case Limits::axis:
+      return "axis";
+    case Limits::none:
+      break;
+  }
+  return "none";
+}
+
+std::string_view name(Active active) {
+  switch (active) {
+    case Active::implicit:
+      return "implicit";
+    case Active::explicit_torque:
+      return "explicit";
+    case Active::off:
+      break;
+  }
+  return "off";
+}
+
+std::string rate_name(double fixed_hz) {
+  return fixed_hz > 0.0 ? fmt::format("fixed:{}", fixed_hz) : "adaptive";
+}
+
+}  // namespace ukemi

@@ -1,0 +1,36 @@
+// What a bake did, as JSON (format 1).
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "bake/bake.h"
+
+namespace ukemi {
+
+/// The report of a bake. Keys that do not apply are null. Beyond the obvious:
+/// 1. humanoid.frames.SEGMENT.segment_from_node is a unit quaternion [x, y, z, w] that takes the node's axes
+/// to the
+///    segment's anatomical axes: R_world_segment(t) = R_world_node(t) * conjugate(segment_from_node), where
+///    R_world_node is the rotation of the node's world transform in a y-up world. Evaluated at the start pose
+///    with canonical rolls; it holds for the whole clip.
+/// 2. impact.position_jump_m: largest distance of a joint in the clip's first frame from where the clip it
+/// starts from
+///    has it. velocity_jump_m_s: largest difference of a joint's velocity over the first frame from that
+///    clip's, the hit segment left out. Both null for a still start.
+/// 3. clip.jerk_max_deg_s3 is the largest second difference of a node's local angular velocity between
+/// frames.
+/// 4. timings_s.realtime_factor is the clip's length over the total.
+std::string report_json(const std::string& character, const Character& loaded, const BakeSettings& settings,
+                        const BakeOutcome& outcome, const ReducedClip& reduced,
+                        const Diagnostics& diagnostics);
+
+/// Largest jerk of any node's local rotation, degrees / s^3; 0 for clips of fewer than four frames.
+double largest_jerk_deg_s3(const Clip& clip);
+
+std::string_view name(Limits limits);
+std::string_view name(Active active);
+/// "adaptive" or "fixed:480".
+std::string rate_name(double fixed_hz);
+
+}  // namespace ukemi

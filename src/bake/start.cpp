@@ -1,0 +1,154 @@
+#include "bake/start.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <utility>
+
+#include "bake/bake.h"
+#include "bake/nearest.h"
+
+namespace ukemi {
+namespace {
+
+constexpr double kVelocityStep = 1.0 / 240.0;  // s, to either side
+constexpr double kFloorRate = 30.0;            // samples per second of a clip
+constexpr int kMaxFloorSamples = 600;
+
+Error usage(std::string what, std::string fix) {
+  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+Result<StartPose> parse_pose(std::string_view text) {
+  const std::pair<std::string_view, StartPose> poses[] = {
+      {"rest", StartPose::rest}, {"stand", StartPose::stand}, {"guard", StartPose::guard}};
+  for (const auto& [word, pose] : poses)
+    if (word == text) return pose;
+  return usage(fmt::format("unknown pose '{}'", text), suggestion(text, {"rest", "stand", "guard"}));
+}
+
+double height_above_floor(const Character& character, const Humanoid& humanoid, const Pose& pose) {
+  const auto pelvis_height = [&](const Pose& p) {
+    return segments_of(character.skeleton, humanoid, p)[index(Segment::pelvis)].translation.y();
+  };
+  return pelvis_height(pose) - pelvis_height(stand_on_floor(character, humanoid, pose));
+}
+
+/// Central differences of the segments as the nodes have them (their rolls do not jump); one-sided at the
+/// clip's ends.
+void take_velocities(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& animation,
+                     double time_s, StartState& state) {
+  const double before = std::max(animation.start_s, time_s - kVelocityStep);
+  const double after = std::min(animation.end_s, time_s + kVelocityStep);
+  if (!(after > before)) return;
+  const BodyPose a = segments_of(skeleton, humanoid, sample(skeleton, animation, before));
+  const BodyPose b = segments_of(skeleton, humanoid, sample(skeleton, animation, after));
+  for (int i = 0; i < kSegmentCount; ++i) {
+    state.linear_velocity[i] = (b[i].translation - a[i].translation) / (after - before);
+    state.angular_velocity[i] = log_rotation(b[i].rotation * a[i].rotation.conjugate()) / (after - before);
+  }
+}
+
+Start start_from_clip(const Character& character, const Humanoid& humanoid, std::size_t clip, double at_s) {
+  const Animation& animation = character.animations[clip];
+  Start start;
+  start.name = clip_label(character, clip);
+  start.from_clip = true;
+  start.at_s = at_s;
+  start.pose = sample(character.skeleton, animation, animation.start_s + at_s);
+  start.floor_m = floor_of(character, humanoid, animation);
+  take_velocities(character.skeleton, humanoid, animation, animation.start_s + at_s, start.state);
+  return start;
+}
+
+/// The clip to start from, or nothing for a still pose.
+Result<std::optional<std::size_t>> clip_of(const Character& character, const BakeSettings& settings) {
+  if (settings.pose && settings.clip)
+    return usage("--pose and --clip exclude each other", "give one of them");
+  if (settings.clip) {
+    const auto clip = find_clip(character, *settings.clip);
+    if (!clip) return clip.error();
+    return std::optional(*clip);
+  }
+  if (!settings.pose && is_motion_only(character)) return std::optional(std::size_t{0});
+  if (settings.at_s)
+    return usage("--at needs a clip to take the time from", "add --clip NAME, or leave --at away");
+  return std::optional<std::size_t>();
+}
+
+}  // namespace
+
+bool is_motion_only(const Character& character) {
+  if (character.animations.empty()) return false;
+  if (character.format == SourceFormat::bvh) return true;
+  return character.parts.empty() && character.skins.empty() && character.animations.size() == 1;
+}
+
+std::string clip_label(const Character& character, std::size_t clip) {
+  const std::string& name = character.animations[clip].name;
+  return name.empty() ? fmt::format("#{}", clip) : name;
+}
+
+Result<std::size_t> find_clip(const Character& character, std::string_view name) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < character.animations.size(); ++i) {
+    names.push_back(clip_label(character, i));
+    if (names.back() == name) return i;
+  }
+  std::size_t number = 0;
+  const char* end = name.data() + name.size();
+  if (name.size() > 1 && name.front() == '#') {
+    const auto [parsed, error] = std::from_chars(name.data() + 1, end, number);
+    if (error == std::errc() && parsed == end && number < names.size()) return number;
+  }
+  const std::string what = fmt::format("{} has no clip '{}'", character.path.string(), name);
+  return usage(what, names.empty() ? "the file holds no clips; use --pose" : suggestion(name, names));
+}
+
+double floor_of(const Character& character, const Humanoid& humanoid, const Animation& animation) {
+  const double wanted = animation.duration_s() * kFloorRate;
+  const int last = static_cast<int>(std::min(wanted, static_cast<double>(kMaxFloorSamples)));
+  double floor = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= last; ++i) {
+    const double time_s = animation.start_s + (last > 0 ? animation.duration_s() * i / last : 0.0);
+    floor = std::min(floor,
+                     height_above_floor(character, humanoid, sample(character.skeleton, animation, time_s)));
+  }
+  return floor;
+}
+
+Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings) {
+  const auto clip = clip_of(character, settings);
+  if (!clip) return clip.error();
+  Start start;
+  if (*clip) {
+    const double at_s = settings.at_s.value_or(0.0);
+    const double duration_s = character.animations[**clip].duration_s();
+    if (!(at_s >= 0.0) || at_s > duration_s + 1e-6)
+      return usage(fmt::format("--at {} lies outside the clip '{}'", at_s, clip_label(character, **clip)),
+                   fmt::format("give a time from 0 to {:.3f} s", duration_s));
+    start = start_from_clip(character, humanoid, **clip, at_s);
+  } else {
+    start.name = settings.pose.value_or("stand");
+    const auto pose = parse_pose(start.name);
+    if (!pose) return pose.error();
+    start.pose = start_pose(character, humanoid, *pose);
+  }
+  start.segments = canonical_segments_of(character.skeleton, humanoid, start.pose);
+  start.state.segments = start.segments;
+  for (Rigid& segment : start.state.segments) segment.translation.y() -= start.floor_m;
+  return start;
+}
+
+Pose moved(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose, const Vec3& offset) {
+  const Similarity file_from_world = humanoid.world_from_file.inverse();
+  const Vec3 file_offset = file_from_world.scale * (file_from_world.rotation * offset);
+  Pose result = pose;
+  for (int i = 0; i < skeleton.size(); ++i)
+    if (skeleton.nodes[i].parent < 0) result[i].translation += file_offset;
+  return result;
+}
+
+}  // namespace ukemi

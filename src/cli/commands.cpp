@@ -1,0 +1,65 @@
+#include "cli/commands.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+
+#include "bake/bake.h"
+#include "bake/nearest.h"
+#include "cli/console.h"
+
+namespace ukemi {
+namespace {
+
+struct Command {
+  std::string_view name;
+  std::string_view arguments;
+  std::string_view summary;
+  int (*run)(const Arguments&);
+};
+
+constexpr std::array<Command, 4> kCommands = {{
+    {"bake", "CHARACTER", "one hit reaction of a character: clip, contact sheet, report", bake_command},
+    {"inspect", "FILE", "what is in a file: skeleton, humanoid map, units, clips, range of motion",
+     inspect_command},
+    {"render", "FILE", "contact sheet of any clip in a file", render_command},
+    {"diff", "A B", "compares two clips joint by joint", diff_command},
+}};
+
+std::string overview() {
+  std::string text =
+      "ukemi bakes hit reactions: a humanoid character and an impact in, a clip whose joints stay human "
+      "out\n\n"
+      "usage: ukemi COMMAND ...\n\n";
+  for (const Command& command : kCommands)
+    text +=
+        fmt::format("  {:<18} {}\n", fmt::format("{} {}", command.name, command.arguments), command.summary);
+  return text +
+         "\nukemi COMMAND --help prints the options of a command; ukemi --version the version.\n\n"
+         "exit status: 0 done; 1 done, but a check said no; 2 something must change (command line, input "
+         "file);\n"
+         "             3 the simulation failed; 4 cannot write; 70 a bug of the program\n\n"
+         "example: ukemi bake mannequin --hit chest --from front -o hit.glb -o hit.bvh --sheet hit.png\n";
+}
+
+int refuse(const std::string& what, const std::string& fix) {
+  return print_error({ErrorKind::usage, "", 0, 0, "", what, fix});
+}
+
+}  // namespace
+
+int run(const Arguments& arguments) {
+  if (arguments.empty()) return refuse("no command", "see ukemi --help");
+  const std::string& word = arguments.front();
+  if (word == "--help" || word == "-h" || word == "help") return print_result(overview(), 0);
+  if (word == "--version") return print_result(generator() + "\n", 0);
+  for (const Command& command : kCommands)
+    if (command.name == word) return command.run(Arguments(arguments.begin() + 1, arguments.end()));
+  if (word.starts_with('-')) return refuse(fmt::format("unknown option '{}'", word), "see ukemi --help");
+  std::vector<std::string> names;
+  for (const Command& command : kCommands) names.emplace_back(command.name);
+  return refuse(fmt::format("unknown command '{}'", word), suggestion(word, names));
+}
+
+}  // namespace ukemi

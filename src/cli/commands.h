@@ -1,0 +1,19 @@
+// The program's commands: each takes the arguments after its name and answers with the exit status.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ukemi {
+
+using Arguments = std::vector<std::string>;
+
+int bake_command(const Arguments& arguments);
+int inspect_command(const Arguments& arguments);
+int render_command(const Arguments& arguments);
+int diff_command(const Arguments& arguments);
+
+/// The whole command line without the program's name.
+int run(const Arguments& arguments);
+
+}  // namespace ukemi

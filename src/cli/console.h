@@ -1,0 +1,16 @@
+// What the program says, and where: results to stdout, everything else to stderr.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+
+namespace ukemi {
+
+/// "ukemi: error: ..." and "  fix: ..." to stderr. Returns the exit status of the error.
+int print_error(const Error& error);
+void print_warnings(const Diagnostics& diagnostics);
+/// A result, to stdout. Returns `status`, or that of a failed write; a reader that went away is no failure.
+int print_result(const std::string& text, int status);
+
+}  // namespace ukemi

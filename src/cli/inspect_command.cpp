@@ -1,0 +1,37 @@
+#include <string>
+
+#include "bake/inspect.h"
+#include "cli/character_options.h"
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/options.h"
+
+namespace ukemi {
+
+int inspect_command(const Arguments& arguments) {
+  std::string file;
+  InspectSettings settings;
+  bool json = false;
+  Options options(
+      "inspect",
+      "says what is in a file: skeleton, humanoid map, units, clips, and how far its poses lie outside the "
+      "range of motion.\nExit status: 0 humanoid, 1 not a humanoid, 2 malformed");
+  options.argument("FILE", file, "a .glb .gltf .vrm .fbx .dae .bvh file, or the word mannequin");
+  declare_humanoid_options(options, settings.humanoid);
+  options.text("--region", "NAME|FILE", settings.region,
+               "range of motion: human diamond box, or a TOML file");
+  options.flag("--json", json, "as JSON");
+  const auto outcome = options.parse(arguments);
+  if (!outcome) return print_error(outcome.error());
+  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+
+  Diagnostics diagnostics;
+  const auto inspection = inspect(file, settings, diagnostics);
+  print_warnings(diagnostics);
+  if (!inspection) return print_error(inspection.error());
+  if (inspection->verdict == Verdict::malformed) print_error(*inspection->error);
+  return print_result(json ? inspection_json(*inspection, diagnostics) : inspection_text(file, *inspection),
+                      exit_status(inspection->verdict));
+}
+
+}  // namespace ukemi

@@ -1,0 +1,294 @@
+#include "cli/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "bake/nearest.h"
+
+namespace ukemi {
+namespace {
+
+constexpr std::size_t kNameColumn = 28;
+constexpr std::size_t kLineWidth = 100;
+
+Error usage(std::string what, std::string fix) {
+  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+/// Breaks between words so that no line is longer than `width`.
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::string result;
+  std::size_t line = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::size_t length = end - begin;
+    if (line > 0 && line + 1 + length > width) {
+      result += '\n';
+      line = 0;
+    } else if (line > 0) {
+      result += ' ';
+      ++line;
+    }
+    result.append(text, begin, length);
+    line += length;
+    begin = end + 1;
+  }
+  return result;
+}
+
+/// Layout of `ukemi COMMAND --help`.
+class HelpLayout : public CLI::Formatter {
+ public:
+  HelpLayout() { column_width(kNameColumn); }
+
+  std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode mode) const override {
+    std::string text = fmt::format("{}\n\nusage: ukemi {}", app->get_description(), app->get_name());
+    for (const CLI::Option* option :
+         app->get_options([](const CLI::Option* o) { return o->get_positional(); }))
+      text += " " + option->get_name(true, false);
+    return text + " [options]\n" + make_positionals(app) + make_groups(app, mode);
+  }
+
+  std::string make_group(std::string title, bool positional,
+                         std::vector<const CLI::Option*> options) const override {
+    std::string text = positional ? "\n" : fmt::format("\n{}:\n", title);
+    for (const CLI::Option* option : options) text += make_option(option, positional);
+    return text;
+  }
+
+  std::string make_option_opts(const CLI::Option* option) const override {
+    return option->get_type_name().empty() ? "" : " " + option->get_type_name();
+  }
+
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(option->get_description(), kLineWidth - kNameColumn);
+  }
+};
+
+std::string with_notes(const std::string& help, std::vector<std::string> notes) {
+  notes.erase(std::remove(notes.begin(), notes.end(), ""), notes.end());
+  return notes.empty() ? help : fmt::format("{} [{}]", help, fmt::join(notes, "; "));
+}
+
+std::string long_name(const std::string& names) {
+  const auto comma = names.rfind(',');
+  return comma == std::string::npos ? names : names.substr(comma + 1);
+}
+
+}  // namespace
+
+std::string Range::text() const {
+  return above_min ? fmt::format("above {}, at most {}", min, max) : fmt::format("{} to {}", min, max);
+}
+
+Result<double> parse_number(std::string_view option, std::string_view text, const Range& range) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [parsed, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || parsed != end || !std::isfinite(value))
+    return usage(fmt::format("{}: '{}' is not a number", option, text), "give a number, " + range.text());
+  if (!range.contains(value))
+    return usage(fmt::format("{}: {} is out of range", option, text), "give a number, " + range.text());
+  return value;
+}
+
+struct Options::Parser {
+  CLI::App app;
+  std::string group = "options";
+  std::vector<std::string> names;      // every long option
+  std::optional<Error> error;          // the first refusal of a value
+  std::vector<std::string> arguments;  // names of the positional ones
+
+  /// Declares an option whose values go, as text, to `take`.
+  CLI::Option* declare(const std::string& flags, const std::string& value, const std::string& help, bool list,
+                       std::function<Status(const std::string&)> take) {
+    const std::string name = long_name(flags);
+    CLI::callback_t callback = [this, take = std::move(take), name, list](const CLI::results_t& values) {
+      if (!list && values.size() > 1 && !error)
+        error = usage(fmt::format("{} is given {} times", name, values.size()), "give it once");
+      for (const std::string& text : values) {
+        const Status status = take(text);
+        if (!status && !error) error = status.error();
+      }
+      return true;
+    };
+    CLI::Option* option = app.add_option(flags, std::move(callback), help);
+    option->type_name(value)->type_size(1)->expected(1)->group(group);
+    option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    names.push_back(name);
+    return option;
+  }
+
+  void declare_flag(const std::string& flags, bool& target, bool value, const std::string& help) {
+    app.add_flag_callback(
+           flags, [&target, value] { target = value; }, help)
+        ->group(group);
+    names.push_back(long_name(flags));
+  }
+
+  Error unknown(const std::string& argument) const {
+    if (argument.size() > 1 && argument.front() == '-') {
+      const std::string name = argument.substr(0, argument.find('='));
+      const std::string near = nearest_word(name, names);
+      return usage(fmt::format("unknown option '{}'", name),
+                   near.empty() ? fmt::format("see ukemi {} --help", app.get_name())
+                                : fmt::format("did you mean '{}'?", near));
+    }
+    return usage(fmt::format("unexpected argument '{}'", argument),
+                 fmt::format("see ukemi {} --help", app.get_name()));
+  }
+};
+
+Options::Options(const std::string& command, const std::string& summary)
+    : parser_(std::make_unique<Parser>()) {
+  parser_->app.name(command);
+  parser_->app.description(summary);
+  parser_->app.formatter(std::make_shared<HelpLayout>());
+  parser_->app.set_help_flag("-h,--help", "print this")->group("");
+  parser_->app.allow_extras();
+  parser_->names.push_back("--help");
+}
+
+Options::~Options() = default;
+
+void Options::group(const std::string& title) { parser_->group = title; }
+
+void Options::argument(const std::string& name, std::string& target, const std::string& help) {
+  parser_->arguments.push_back(name);
+  CLI::Option* option =
+      parser_->app.add_option(name, CLI::callback_t([&target](const CLI::results_t& values) {
+                                target = values.front();
+                                return true;
+                              }),
+                              help);
+  option->type_name("")->type_size(1)->expected(1)->required();
+}
+
+void Options::custom(const std::string& names, const std::string& value,
+                     std::function<Status(const std::string&)> take, const std::string& help, bool list) {
+  parser_->declare(names, value, with_notes(help, {list ? "may be repeated" : ""}), list, std::move(take));
+}
+
+void Options::text(const std::string& names, const std::string& value, std::string& target,
+                   const std::string& help) {
+  parser_->declare(names, value, with_notes(help, {"default " + target}), false,
+                   [&target](const std::string& text) {
+                     target = text;
+                     return Status(Done{});
+                   });
+}
+
+void Options::text(const std::string& names, const std::string& value, std::optional<std::string>& target,
+                   const std::string& help) {
+  custom(
+      names, value,
+      [&target](const std::string& text) {
+        target = text;
+        return Status(Done{});
+      },
+      help);
+}
+
+void Options::number(const std::string& names, const std::string& unit, double& target, const Range& range,
+                     const std::string& help) {
+  const std::string name = long_name(names);
+  parser_->declare(names, unit, with_notes(help, {fmt::format("default {}", target), range.text()}), false,
+                   [&target, range, name](const std::string& text) -> Status {
+                     const auto value = parse_number(name, text, range);
+                     if (!value) return value.error();
+                     target = *value;
+                     return Done{};
+                   });
+}
+
+void Options::number(const std::string& names, const std::string& unit, std::optional<double>& target,
+                     const Range& range, const std::string& help) {
+  const std::string name = long_name(names);
+  parser_->declare(names, unit, with_notes(help, {range.text()}), false,
+                   [&target, range, name](const std::string& text) -> Status {
+                     const auto value = parse_number(name, text, range);
+                     if (!value) return value.error();
+                     target = *value;
+                     return Done{};
+                   });
+}
+
+void Options::path(const std::string& names, std::filesystem::path& target, const std::string& help) {
+  const std::string name = long_name(names);
+  custom(
+      names, "FILE",
+      [&target, name](const std::string& text) -> Status {
+        if (text.empty()) return usage(name + ": the file's name is empty", "name a file");
+        target = text;
+        return Done{};
+      },
+      help);
+}
+
+void Options::paths(const std::string& names, std::vector<std::filesystem::path>& target,
+                    const std::string& help) {
+  const std::string name = long_name(names);
+  custom(
+      names, "FILE",
+      [&target, name](const std::string& text) -> Status {
+        if (text.empty()) return usage(name + ": the file's name is empty", "name a file");
+        target.emplace_back(text);
+        return Done{};
+      },
+      help, true);
+}
+
+void Options::flag(const std::string& names, bool& target, const std::string& help) {
+  parser_->declare_flag(names, target, true, help);
+}
+
+void Options::on_off(const std::string& name, bool& target, const std::string& help) {
+  const bool on = target;
+  parser_->declare_flag("--" + name, target, true, with_notes(help, {on ? "default" : ""}));
+  parser_->declare_flag("--no-" + name, target, false, with_notes("not that", {on ? "" : "default"}));
+}
+
+void Options::choice(const std::string& names, const std::vector<std::string>& words, std::size_t chosen,
+                     std::function<void(std::size_t)> take, const std::string& help) {
+  const std::string name = long_name(names);
+  parser_->declare(
+      names, fmt::format("{}", fmt::join(words, "|")), with_notes(help, {"default " + words[chosen]}), false,
+      [words, take = std::move(take), name](const std::string& text) -> Status {
+        const auto found = std::find(words.begin(), words.end(), text);
+        if (found == words.end())
+          return usage(fmt::format("{}: unknown word '{}'", name, text), suggestion(text, words));
+        take(static_cast<std::size_t>(found - words.begin()));
+        return Done{};
+      });
+}
+
+Result<Options::Outcome> Options::parse(const std::vector<std::string>& arguments) {
+  CLI::App& app = parser_->app;
+  const std::string see = fmt::format("see ukemi {} --help", app.get_name());
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    return Outcome::help;
+  } catch (const CLI::RequiredError&) {
+    if (parser_->error) return *parser_->error;
+    const auto extras = app.remaining();
+    for (const std::string& extra : extras)
+      if (extra.size() > 1 && extra.front() == '-') return parser_->unknown(extra);
+    return usage(fmt::format("{} is missing", fmt::join(parser_->arguments, " or ")), see);
+  } catch (const CLI::ArgumentMismatch& mismatch) {
+    return usage(mismatch.what(), see);
+  } catch (const CLI::ParseError& error) {
+    return usage(error.what(), see);
+  }
+  if (parser_->error) return *parser_->error;
+  if (const auto extras = app.remaining(); !extras.empty()) return parser_->unknown(extras.front());
+  return Outcome::run;
+}
+
+std::string Options::help() const { return parser_->app.help(); }
+
+}  // namespace ukemi
