@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 #include "bake/bake.h"
 #include "bake/nearest.h"
@@ -14,7 +15,7 @@
 namespace ukemi {
 namespace {
 
-constexpr double kDefaultPushDuration = 0.2;  // s
+constexpr std::int64_t kPresetFormat = 1;
 const std::vector<std::string> kSceneNames = {"ball", "push", "impulse"};
 const std::vector<std::string> kDirectionNames = {"front", "back", "left", "right", "above"};
 
@@ -45,9 +46,7 @@ class PresetReader {
     preset_.mass_kg = required("mass_kg");
     preset_.speed_m_s = required("speed_m_s");
     preset_.radius_m = required("radius_m");
-    preset_.impulse_n_s = optional("impulse_n_s");
-    preset_.force_n = optional("force_n");
-    preset_.duration_s = optional("duration_s");
+    preset_.push_duration_s = optional("push_duration_s").value_or(preset_.push_duration_s);
     read_scene();
     if (const toml::node* node = table_.get("stylised")) {
       if (const auto value = node->value_exact<bool>())
@@ -95,9 +94,8 @@ class PresetReader {
   }
 
   void refuse_unknown_keys() {
-    static const std::vector<std::string> known = {"mass_kg",     "speed_m_s",   "radius_m", "scene",
-                                                   "stylised",    "impulse_n_s", "force_n",  "duration_s",
-                                                   "description", "source"};
+    static const std::vector<std::string> known = {"scene",    "mass_kg",  "speed_m_s",
+                                                   "radius_m", "stylised", "push_duration_s"};
     for (auto&& [key, node] : table_) {
       const std::string text(key.str());
       if (std::find(known.begin(), known.end(), text) == known.end())
@@ -110,6 +108,35 @@ class PresetReader {
   ImpactPreset preset_;
   std::optional<Error> error_;
 };
+
+/// toml++ sorts keys; the file's order is restored.
+Result<std::vector<ImpactPreset>> read_presets(const toml::table& document, const std::string& file) {
+  if (document["format"].value_exact<std::int64_t>() != kPresetFormat)
+    return preset_error(file, document.source(), "'format' is not 1", "write format = 1 at the top");
+  std::vector<std::pair<toml::source_position, ImpactPreset>> found;
+  for (auto&& [key, node] : document) {
+    if (key.str() == "format") continue;
+    const toml::table* presets = node.as_table();
+    if (key.str() != "preset" || !presets)
+      return preset_error(file, node.source(), fmt::format("unknown key '{}'", std::string(key.str())),
+                          "write presets as tables, [preset.NAME]");
+    for (auto&& [name, entry] : *presets) {
+      const toml::table* table = entry.as_table();
+      if (!table)
+        return preset_error(file, entry.source(),
+                            fmt::format("'{}' is not a preset", std::string(name.str())),
+                            "write the preset as a table, [preset.NAME]");
+      const auto preset = PresetReader(file, std::string(name.str()), *table).read();
+      if (!preset) return preset.error();
+      found.emplace_back(table->source().begin, *preset);
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<ImpactPreset> presets;
+  for (auto& entry : found) presets.push_back(std::move(entry.second));
+  return presets;
+}
 
 std::optional<double> number(std::string_view text) {
   double value = 0.0;
@@ -168,22 +195,7 @@ Result<std::vector<ImpactPreset>> load_presets() {
 
 Result<std::vector<ImpactPreset>> parse_presets(std::string_view toml, const std::string& file) {
   try {
-    const toml::table document = toml::parse(toml, file);
-    std::vector<std::pair<toml::source_position, ImpactPreset>> found;
-    for (auto&& [key, node] : document) {
-      const toml::table* table = node.as_table();
-      if (!table)
-        return preset_error(file, node.source(), fmt::format("'{}' is not a preset", std::string(key.str())),
-                            "write the preset as a table, [name]");
-      auto preset = PresetReader(file, std::string(key.str()), *table).read();
-      if (!preset) return preset.error();
-      found.emplace_back(table->source().begin, *preset);
-    }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<ImpactPreset> presets;
-    for (auto& entry : found) presets.push_back(std::move(entry.second));
-    return presets;
+    return read_presets(toml::parse(toml, file), file);
   } catch (const toml::parse_error& error) {
     return preset_error(file, error.source(), std::string(error.description()), "correct the TOML syntax");
   }
@@ -252,11 +264,9 @@ Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelv
   scene.ball_speed_m_s = settings.ball_speed_m_s.value_or(preset->speed_m_s);
   scene.ball_radius_m = settings.ball_radius_m.value_or(preset->radius_m);
   const double momentum = scene.ball_mass_kg * scene.ball_speed_m_s;
-  const bool own_ball = settings.ball_mass_kg || settings.ball_speed_m_s;
-  scene.impulse_n_s = own_ball ? momentum : preset->impulse_n_s.value_or(momentum);
-  scene.push_duration_s = preset->duration_s.value_or(kDefaultPushDuration);
-  scene.push_force_n =
-      own_ball || !preset->force_n ? scene.impulse_n_s / scene.push_duration_s : *preset->force_n;
+  scene.impulse_n_s = momentum;
+  scene.push_duration_s = preset->push_duration_s;
+  scene.push_force_n = momentum / scene.push_duration_s;
   return scene;
 }
 

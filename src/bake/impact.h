@@ -15,17 +15,15 @@ namespace ukemi {
 
 struct BakeSettings;
 
-/// One table of assets/impacts/presets.toml.
+/// One table [preset.NAME] of assets/impacts/presets.toml.
 struct ImpactPreset {
   std::string name;
   SceneKind scene = SceneKind::ball;
   double mass_kg = 0.0;
   double speed_m_s = 0.0;
   double radius_m = 0.0;
-  bool stylised = false;  // stronger than the real thing, for the eye
-  std::optional<double> impulse_n_s;
-  std::optional<double> force_n;
-  std::optional<double> duration_s;
+  bool stylised = false;         // stronger than the real thing, for the eye
+  double push_duration_s = 0.2;  // used by a push
 };
 
 /// The presets that come with the program, in the file's order.

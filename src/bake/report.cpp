@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bake/impact.h"
+
 namespace ukemi {
 namespace {
 

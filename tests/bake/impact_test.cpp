@@ -1,0 +1,143 @@
+#include "bake/impact.h"
+
+#include <gtest/gtest.h>
+
+#include "bake/bake.h"
+
+namespace ukemi {
+namespace {
+
+constexpr double kTolerance = 1e-12;
+
+Vec3 travel(const char* from, const Quat& world_from_pelvis = Quat::Identity()) {
+  const auto direction = parse_direction(from);
+  EXPECT_TRUE(direction) << from;
+  return travel_direction(*direction, world_from_pelvis);
+}
+
+// The neutral pelvis: x anterior, y up, z to the right.
+TEST(Direction, WordsTravelAwayFromWhereTheyComeFrom) {
+  EXPECT_LT((travel("front") - Vec3(-1, 0, 0)).norm(), kTolerance);
+  EXPECT_LT((travel("back") - Vec3(1, 0, 0)).norm(), kTolerance);
+  EXPECT_LT((travel("left") - Vec3(0, 0, 1)).norm(), kTolerance) << "the left is at -z, the blow goes to +z";
+  EXPECT_LT((travel("right") - Vec3(0, 0, -1)).norm(), kTolerance);
+  EXPECT_LT((travel("above") - Vec3(0, -1, 0)).norm(), kTolerance);
+}
+
+TEST(Direction, DegreesMeanTheSameAsTheWords) {
+  EXPECT_LT((travel("90") - travel("left")).norm(), kTolerance);
+  EXPECT_LT((travel("-90") - travel("right")).norm(), kTolerance);
+  EXPECT_LT((travel("270,0") - travel("right")).norm(), kTolerance);
+  EXPECT_LT((travel("0,30") - Vec3(-std::cos(radians(30)), -0.5, 0)).norm(), kTolerance);
+}
+
+TEST(Direction, TurnsWithThePelvisButStaysLevel) {
+  const Quat turned = exp_rotation(Vec3(0, radians(40), 0));
+  const Quat leaning = turned * exp_rotation(Vec3(0, 0, radians(-25)));  // forward
+  EXPECT_LT((travel("front", leaning) - turned * Vec3(-1, 0, 0)).norm(), kTolerance);
+}
+
+TEST(Direction, OfALyingBodyFollowsHeadOrFeet) {
+  const Quat prone = exp_rotation(Vec3(0, 0, radians(-90)));  // anterior down, head forward (+x)
+  EXPECT_LT((travel("front", prone) - Vec3(-1, 0, 0)).norm(), kTolerance);
+  const Quat supine = exp_rotation(Vec3(0, 0, radians(90)));  // anterior up, head backward (-x)
+  EXPECT_LT((travel("front", supine) - Vec3(-1, 0, 0)).norm(), kTolerance);
+}
+
+TEST(Direction, RefusesWhatIsNone) {
+  for (const char* text : {"", "frnt", "1,2,3", "north", "361", "0,91", "nan", "1e999", "0,", ",0", "12 "}) {
+    const auto direction = parse_direction(text);
+    ASSERT_FALSE(direction) << text;
+    EXPECT_EQ(direction.error().kind, ErrorKind::usage);
+    EXPECT_FALSE(direction.error().fix.empty());
+  }
+  EXPECT_EQ(parse_direction("frnt").error().fix, "did you mean 'front'?");
+}
+
+TEST(Presets, OfTheProgramLoadInTheirOrder) {
+  const auto presets = load_presets();
+  ASSERT_TRUE(presets) << presets.error().message();
+  std::vector<std::string> names;
+  for (const ImpactPreset& preset : *presets) {
+    names.push_back(preset.name);
+    EXPECT_GT(preset.mass_kg * preset.speed_m_s, 1.0) << preset.name;
+  }
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"punch", "kick", "medicine-ball", "football", "tackle", "shot"}));
+}
+
+struct BadPreset {
+  const char* toml;
+  int line;
+  const char* what;
+};
+
+TEST(Presets, SayWhereTheFileIsWrong) {
+  const BadPreset bad[] = {
+      {"format = 1\n[preset.a\n", 2, ""},
+      {"[preset.a]\nmass_kg = 1\n", 1, "format"},
+      {"format = 1\n[preset.a]\nspeed_m_s = 1\nradius_m = 1\n", 2, "'mass_kg' is missing"},
+      {"format = 1\n[preset.a]\nmass_kg = 1\nspeed_m_s = -1\nradius_m = 1\n", 4, "not a number above 0"},
+      {"format = 1\n[preset.a]\nmass_kg = 1\nspeed_m_s = 1\nradius_m = 1\nmas = 2\n", 6, "unknown key 'mas'"},
+      {"format = 1\n[preset.a]\nmass_kg = 1\nspeed_m_s = 1\nradius_m = 1\nscene = \"bal\"\n", 6,
+       "unknown scene"},
+      {"format = 1\n[other]\n", 2, "unknown key 'other'"},
+  };
+  for (const BadPreset& test : bad) {
+    const auto presets = parse_presets(test.toml, "p.toml");
+    ASSERT_FALSE(presets) << test.toml;
+    EXPECT_EQ(presets.error().kind, ErrorKind::input);
+    EXPECT_EQ(presets.error().file, "p.toml");
+    EXPECT_EQ(presets.error().line, test.line) << test.toml;
+    EXPECT_NE(presets.error().what.find(test.what), std::string::npos) << presets.error().what;
+  }
+}
+
+TEST(Scene, TakesThePresetAndWhatReplacesIt) {
+  BakeSettings settings;
+  settings.hit = "head";
+  settings.ball_speed_m_s = 9.0;
+  const auto scene = scene_of(settings, Quat::Identity());
+  ASSERT_TRUE(scene) << scene.error().message();
+  EXPECT_EQ(scene->kind, SceneKind::ball);
+  EXPECT_EQ(scene->target, Segment::head);
+  EXPECT_DOUBLE_EQ(scene->ball_mass_kg, 5.0);
+  EXPECT_DOUBLE_EQ(scene->ball_speed_m_s, 9.0);
+  EXPECT_EQ(preset_in_use(settings), "medicine-ball");
+  settings.ball_mass_kg = 1.0;
+  settings.ball_radius_m = 0.1;
+  EXPECT_FALSE(preset_in_use(settings)) << "nothing of the preset is left";
+}
+
+TEST(Scene, EveryWayOfHittingCarriesTheSameMomentum) {
+  for (const char* kind : {"ball", "push", "impulse"}) {
+    BakeSettings settings;
+    settings.preset = "punch";
+    settings.scene = kind;
+    const auto scene = scene_of(settings, Quat::Identity());
+    ASSERT_TRUE(scene);
+    EXPECT_EQ(name(scene->kind), kind);
+    EXPECT_NEAR(scene->ball_mass_kg * scene->ball_speed_m_s, 26.506, 1e-9);
+    EXPECT_NEAR(scene->push_force_n * scene->push_duration_s, 26.506, 1e-9);
+    EXPECT_NEAR(scene->impulse_n_s, 26.506, 1e-9);
+  }
+}
+
+TEST(Scene, RefusesUnknownWordsWithTheNearestAndNumbersOutOfRange) {
+  BakeSettings settings;
+  settings.hit = "chset";
+  EXPECT_EQ(check_scene(settings).error().what, "unknown segment 'chset'");
+  EXPECT_EQ(check_scene(settings).error().fix, "did you mean 'chest'?");
+  settings = {};
+  settings.preset = "puhcn";
+  EXPECT_EQ(check_scene(settings).error().fix, "did you mean 'punch'?");
+  settings = {};
+  settings.scene = "slop";
+  EXPECT_EQ(check_scene(settings).error().what, "unknown scene 'slop'");
+  settings = {};
+  settings.ball_mass_kg = -1.0;
+  EXPECT_EQ(check_scene(settings).error().kind, ErrorKind::usage);
+}
+
+}  // namespace
+}  // namespace ukemi
