@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,14 +13,16 @@
 
 namespace ukemi {
 
-/// Key times and values of one animated quantity, ready to be written.
+/// Fewer keys within a bound at world positions.
 struct KeyReduction {
   bool enabled = true;
   double tolerance_m = 0.0005;  // largest world-position error of any joint
 };
 
-/// The clip as tracks: only quantities that move, linear interpolation. `error_m` is the largest distance of any
-/// node from the unreduced clip, metres, at every frame.
+/// The clip as tracks: only quantities that move, linear interpolation, the shorter arc between rotations; what
+/// rests, but not in the rest pose, has a single key. `error_m` is the largest distance of any node from the
+/// unreduced clip, metres, at every frame; a node without children stands for a point as far out as its bone is
+/// long (1 to 20 cm), so that hands and heads keep their turn.
 struct ReducedClip {
   std::string name;
   std::vector<Track> tracks;
@@ -31,13 +34,21 @@ ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Simila
                         const KeyReduction& settings);
 
 struct GltfOptions {
-  bool clip_only = false;  // skeleton and animation without the mesh
+  bool clip_only = false;   // nodes and animation without meshes, skins, materials, images, extensions
   std::string extras_json;  // written as the animation's "extras" when not empty
+  /// Where the file will lie. Links of a .gltf to files beside it are kept when this is the source's folder;
+  /// otherwise (and when not given) what they link to is embedded.
+  std::optional<std::filesystem::path> folder;
 };
 
-/// The character's document plus one animation, as the bytes of a .glb or of a .gltf with embedded buffers.
-/// Documents that the loader wrote (BVH, FBX, DAE) get a root node with `world_from_file`, and a simple figure
-/// where they have no mesh. Errors: input (document cannot take an animation), internal.
+/// The character's document plus one animation, as the bytes of a .glb or the text of a .gltf. Everything that is
+/// not added stays as it is, in its order, with two exceptions: a node that is animated and has a `matrix` gets
+/// translation, rotation and scale instead (glTF demands it), and a change of container moves buffers and images
+/// into the binary chunk or out of it. The name of the animation is made unique. In a .glb the source's binary
+/// chunk is a prefix of the new one; a .gltf gets a further buffer.
+/// Documents that the loader wrote (BVH, FBX, DAE) get a root node "ukemi_world" with `world_from_file`, and a
+/// simple figure where they have no mesh. Errors: input (document cannot take an animation, an image is missing),
+/// internal.
 Result<std::vector<std::uint8_t>> write_glb(const Character& character, const Humanoid& humanoid,
                                             const ReducedClip& clip, const GltfOptions& options);
 Result<std::string> write_gltf(const Character& character, const Humanoid& humanoid, const ReducedClip& clip,
@@ -47,9 +58,12 @@ struct BvhOptions {
   double metres_per_unit = 0.01;  // unit of a BVH that does not come from a BVH: centimetres
 };
 
-/// Same hierarchy, names, offsets, channel order and unit as a BVH source; for others the joints of the humanoid's
-/// chains and their ancestors below and including the root. Root OFFSET 0 unless the source has another, positions
-/// on the root only, Euler angles without jumps, full precision.
+/// Same hierarchy, names, offsets, channel order and unit as a BVH source (joints with fewer than three rotation
+/// channels get the nearest rotation those can make). For others the joints of the humanoid's chains and their
+/// ancestors up to the root: offsets as in the reference pose, all rotations zero there and axes along the world's,
+/// root OFFSET 0, positions on the root only, rotations Z Y X: with y in the middle a body that lies on its back,
+/// belly or side, bent hips and bent knees stay clear of the gimbal.
+/// Euler angles without jumps, full precision. Errors: input (a clip without frames or of another skeleton).
 Result<std::string> write_bvh(const Character& character, const Humanoid& humanoid, const Clip& clip,
                               const BvhOptions& options);
 
