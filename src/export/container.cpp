@@ -47,7 +47,8 @@ Result<std::vector<std::uint8_t>> assemble_glb(std::string json, std::span<const
   const std::size_t bin_size = bin.empty() ? 0 : 8 + padded(bin.size());
   const std::size_t size = 12 + 8 + padded(json.size()) + bin_size + further.size();
   if (size > std::numeric_limits<std::uint32_t>::max())
-    return Error{ErrorKind::input, "", 0, 0, "", "a .glb cannot be larger than 4 GiB", "write a .gltf instead"};
+    return Error{ErrorKind::input,       "", 0, 0, "", "a .glb cannot be larger than 4 GiB",
+                 "write a .gltf instead"};
   std::vector<std::uint8_t> out{'g', 'l', 'T', 'F', 2, 0, 0, 0};
   out.reserve(size);
   put_u32(out, size);

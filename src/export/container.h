@@ -13,8 +13,8 @@
 
 namespace ukemi {
 
-/// Chunks JSON (padded with spaces), BIN (padded with zeros; left out when empty) and `further`, which holds whole
-/// chunks. Errors: input, when the file would pass 4 GiB.
+/// Chunks JSON (padded with spaces), BIN (padded with zeros; left out when empty) and `further`, which holds
+/// whole chunks. Errors: input, when the file would pass 4 GiB.
 Result<std::vector<std::uint8_t>> assemble_glb(std::string json, std::span<const std::uint8_t> bin,
                                                std::span<const std::uint8_t> further);
 

@@ -13,8 +13,8 @@ using AxisOrder = std::array<int, 3>;
 
 Quat from_euler(const Vec3& angles, const AxisOrder& order);
 
-/// Angles in radians that give `rotation` to rounding, everywhere. Of all equivalent triples the one nearest to
-/// `previous`; without a previous one, the middle angle lies within a quarter turn.
+/// Angles in radians that give `rotation` to rounding, everywhere. Of all equivalent triples the one nearest
+/// to `previous`; without a previous one, the middle angle lies within a quarter turn.
 Vec3 to_euler(const Quat& rotation, const AxisOrder& order, const std::optional<Vec3>& previous);
 
 }  // namespace ukemi

@@ -19,10 +19,10 @@ struct KeyReduction {
   double tolerance_m = 0.0005;  // largest world-position error of any joint
 };
 
-/// The clip as tracks: only quantities that move, linear interpolation, the shorter arc between rotations; what
-/// rests, but not in the rest pose, has a single key. `error_m` is the largest distance of any node from the
-/// unreduced clip, metres, at every frame; a node without children stands for a point as far out as its bone is
-/// long (1 to 20 cm), so that hands and heads keep their turn.
+/// The clip as tracks: only quantities that move, linear interpolation, the shorter arc between rotations;
+/// what rests, but not in the rest pose, has a single key. `error_m` is the largest distance of any node from
+/// the unreduced clip, metres, at every frame; a node without children stands for a point as far out as its
+/// bone is long (1 to 20 cm), so that hands and heads keep their turn.
 struct ReducedClip {
   std::string name;
   std::vector<Track> tracks;
@@ -41,14 +41,13 @@ struct GltfOptions {
   std::optional<std::filesystem::path> folder;
 };
 
-/// The character's document plus one animation, as the bytes of a .glb or the text of a .gltf. Everything that is
-/// not added stays as it is, in its order, with two exceptions: a node that is animated and has a `matrix` gets
-/// translation, rotation and scale instead (glTF demands it), and a change of container moves buffers and images
-/// into the binary chunk or out of it. The name of the animation is made unique. In a .glb the source's binary
-/// chunk is a prefix of the new one; a .gltf gets a further buffer.
-/// Documents that the loader wrote (BVH, FBX, DAE) get a root node "ukemi_world" with `world_from_file`, and a
-/// simple figure where they have no mesh. Errors: input (document cannot take an animation, an image is missing),
-/// internal.
+/// The character's document plus one animation, as the bytes of a .glb or the text of a .gltf. Everything
+/// that is not added stays as it is, in its order, with two exceptions: a node that is animated and has a
+/// `matrix` gets translation, rotation and scale instead (glTF demands it), and a change of container moves
+/// buffers and images into the binary chunk or out of it. The name of the animation is made unique. In a .glb
+/// the source's binary chunk is a prefix of the new one; a .gltf gets a further buffer. Documents that the
+/// loader wrote (BVH, FBX, DAE) get a root node "ukemi_world" with `world_from_file`, and a simple figure
+/// where they have no mesh. Errors: input (document cannot take an animation, an image is missing), internal.
 Result<std::vector<std::uint8_t>> write_glb(const Character& character, const Humanoid& humanoid,
                                             const ReducedClip& clip, const GltfOptions& options);
 Result<std::string> write_gltf(const Character& character, const Humanoid& humanoid, const ReducedClip& clip,
@@ -58,12 +57,12 @@ struct BvhOptions {
   double metres_per_unit = 0.01;  // unit of a BVH that does not come from a BVH: centimetres
 };
 
-/// Same hierarchy, names, offsets, channel order and unit as a BVH source (joints with fewer than three rotation
-/// channels get the nearest rotation those can make). For others the joints of the humanoid's chains and their
-/// ancestors up to the root: offsets as in the reference pose, all rotations zero there and axes along the world's,
-/// root OFFSET 0, positions on the root only, rotations Z Y X: with y in the middle a body that lies on its back,
-/// belly or side, bent hips and bent knees stay clear of the gimbal.
-/// Euler angles without jumps, full precision. Errors: input (a clip without frames or of another skeleton).
+/// Same hierarchy, names, offsets, channel order and unit as a BVH source (joints with fewer than three
+/// rotation channels get the nearest rotation those can make). For others the joints of the humanoid's chains
+/// and their ancestors up to the root: offsets as in the reference pose, all rotations zero there and axes
+/// along the world's, root OFFSET 0, positions on the root only, rotations Z Y X: with y in the middle a body
+/// that lies on its back, belly or side, bent hips and bent knees stay clear of the gimbal. Euler angles
+/// without jumps, full precision. Errors: input (a clip without frames or of another skeleton).
 Result<std::string> write_bvh(const Character& character, const Humanoid& humanoid, const Clip& clip,
                               const BvhOptions& options);
 

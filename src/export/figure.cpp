@@ -27,7 +27,8 @@ void add_bone(Figure& figure, int node, const Vec3& from, const Vec3& to, double
   const Vec3 front = along.cross(side) / length;
   const double width = std::min(kWidthShare * length, kWidthMax * height);
   const Vec3 middle = from + kWidest * along;
-  const Vec3 ring[4] = {middle + width * side, middle + width * front, middle - width * side, middle - width * front};
+  const Vec3 ring[4] = {middle + width * side, middle + width * front, middle - width * side,
+                        middle - width * front};
   for (int i = 0; i < 4; ++i) {
     add_triangle(figure, node, from, ring[(i + 1) % 4], ring[i]);
     add_triangle(figure, node, to, ring[i], ring[(i + 1) % 4]);

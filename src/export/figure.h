@@ -10,8 +10,8 @@
 
 namespace ukemi {
 
-/// Flat-shaded triangles, three vertices each, in file units, in the pose `Humanoid::reference`; each vertex moves
-/// with one node.
+/// Flat-shaded triangles, three vertices each, in file units, in the pose `Humanoid::reference`; each vertex
+/// moves with one node.
 struct Figure {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
@@ -19,7 +19,8 @@ struct Figure {
   std::vector<Affine> inverse_bind;  // per node of the skeleton
 };
 
-/// An elongated octahedron from every node to each of its children and End Sites. Empty when no bone has a length.
+/// An elongated octahedron from every node to each of its children and End Sites. Empty when no bone has a
+/// length.
 Figure make_figure(const Character& character, const Humanoid& humanoid);
 
 }  // namespace ukemi

@@ -1,5 +1,6 @@
-// Key reduction: the longest pieces that stay within a joint's own tolerance, then a check of the whole reduced
-// clip by forward kinematics, which puts keys back where the error of a node's world position is too large.
+// Key reduction: the longest pieces that stay within a joint's own tolerance, then a check of the whole
+// reduced clip by forward kinematics, which puts keys back where the error of a node's world position is too
+// large.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -47,8 +48,8 @@ double distance(TrackPath path, const Value& a, const Value& b) {
   return (path == TrackPath::rotation ? 2.0 : 1.0) * (a - b).norm();
 }
 
-/// Values at equal steps from a to b, exclusive of both: x(k+1) = c x(k) - x(k-1) holds for a line with c = 2 and
-/// for a great arc of unit quaternions with c = 2 cos(step).
+/// Values at equal steps from a to b, exclusive of both: x(k+1) = c x(k) - x(k-1) holds for a line with c = 2
+/// and for a great arc of unit quaternions with c = 2 cos(step).
 template <typename Visit>
 bool each_between(TrackPath path, const Value& a, const Value& b, int steps, Visit visit) {
   double c = 2.0;
@@ -71,9 +72,9 @@ bool each_between(TrackPath path, const Value& a, const Value& b, int steps, Vis
 }
 
 bool fits(const Curve& curve, int from, int to, double tolerance) {
-  return each_between(curve.path, curve.wanted[from], curve.wanted[to], to - from, [&](int k, const Value& v) {
-    return distance(curve.path, v, curve.wanted[from + k]) <= tolerance;
-  });
+  return each_between(
+      curve.path, curve.wanted[from], curve.wanted[to], to - from,
+      [&](int k, const Value& v) { return distance(curve.path, v, curve.wanted[from + k]) <= tolerance; });
 }
 
 /// Last frame that a piece from `from` may reach: doubled until it fails, then bisected.
@@ -139,8 +140,8 @@ class Rig {
   double reach_m(int node, TrackPath path) const {
     return path == TrackPath::translation ? metres_per_unit_[node] : reach_m_[node];
   }
-  /// Distance of a node, and of its tip where it has no children, between two poses. The Frobenius norm of the
-  /// difference of two rotations is sqrt(2) times the angle, for small angles.
+  /// Distance of a node, and of its tip where it has no children, between two poses. The Frobenius norm of
+  /// the difference of two rotations is sqrt(2) times the angle, for small angles.
   double distance_m(int node, const Affine& a, const Affine& b) const {
     const double moved = (a.translation() - b.translation()).norm();
     if (tip_[node] == 0.0) return moved;
@@ -180,7 +181,8 @@ Curve curve_of(const Clip& clip, int node, TrackPath path, double reach_m) {
   curve.wanted.reserve(clip.frames.size());
   for (const Pose& pose : clip.frames) {
     Value value = value_of(pose[node], path);
-    if (path == TrackPath::rotation && !curve.wanted.empty() && value.dot(curve.wanted.back()) < 0) value = -value;
+    if (path == TrackPath::rotation && !curve.wanted.empty() && value.dot(curve.wanted.back()) < 0)
+      value = -value;
     curve.wanted.push_back(value);
   }
   curve.reduced = curve.wanted;
@@ -219,7 +221,11 @@ std::vector<Curve> curves_of(const Skeleton& skeleton, const Clip& clip, const R
 class Check {
  public:
   Check(const Skeleton& skeleton, const Clip& clip, const Rig& rig, std::vector<Curve>& curves)
-      : skeleton_(skeleton), rig_(rig), curves_(curves), pose_(rest_pose(skeleton)), error_m_(clip.frames.size()) {
+      : skeleton_(skeleton),
+        rig_(rig),
+        curves_(curves),
+        pose_(rest_pose(skeleton)),
+        error_m_(clip.frames.size()) {
     wanted_.reserve(clip.frames.size());
     for (const Pose& pose : clip.frames) wanted_.push_back(rig.world(pose));
     by_node_.resize(skeleton.nodes.size());
@@ -263,7 +269,8 @@ class Check {
     for (int node = worst_[frame]; node >= 0; node = skeleton_.nodes[node].parent) {
       for (const std::size_t i : by_node_[node]) {
         Curve& curve = curves_[i];
-        const double share = lever_m(curve, frame) * distance(curve.path, curve.reduced[frame], curve.wanted[frame]);
+        const double share =
+            lever_m(curve, frame) * distance(curve.path, curve.reduced[frame], curve.wanted[frame]);
         if (share <= largest || curve.keys.size() == 1) continue;
         if (std::binary_search(curve.keys.begin(), curve.keys.end(), frame)) continue;
         largest = share;

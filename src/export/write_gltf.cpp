@@ -73,7 +73,8 @@ std::size_t add_accessor(Edit& edit, std::size_t view, std::size_t offset, int c
                                                    {"type", type}});
 }
 
-// ---- buffers and images ---------------------------------------------------------------------------------------
+// ---- buffers and images
+// ---------------------------------------------------------------------------------------
 
 bool is_external(const Json& object) {
   const auto uri = object.find("uri");
@@ -83,7 +84,9 @@ bool is_external(const Json& object) {
 bool same_folder(const fs::path& a, const std::optional<fs::path>& b) {
   if (!b) return false;
   std::error_code error;
-  const auto full = [&](const fs::path& path) { return fs::weakly_canonical(path.empty() ? "." : path, error); };
+  const auto full = [&](const fs::path& path) {
+    return fs::weakly_canonical(path.empty() ? "." : path, error);
+  };
   return full(a) == full(*b);
 }
 
@@ -153,7 +156,8 @@ void merge_buffers(Edit& edit, const GltfDocument& document) {
   for (Json& view : views) {
     move_view(view);
     for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
-      if (view.contains("extensions") && view["extensions"].contains(name)) move_view(view["extensions"][name]);
+      if (view.contains("extensions") && view["extensions"].contains(name))
+        move_view(view["extensions"][name]);
   }
   buffers = std::move(kept);
 }
@@ -181,12 +185,14 @@ Status open_for_gltf(Edit& edit, const Character& character, bool keep_links) {
   return keep_links ? Status(Done{}) : embed_images(edit, character, false);
 }
 
-// ---- the document's nodes ------------------------------------------------------------------------------------
+// ---- the document's nodes
+// ------------------------------------------------------------------------------------
 
 /// Leaves the nodes with their transforms, names and extras.
 void keep_skeleton_only(Json& json) {
-  for (const char* key : {"meshes", "skins", "materials", "textures", "images", "samplers", "animations", "accessors",
-                          "bufferViews", "buffers", "extensions", "extensionsUsed", "extensionsRequired"})
+  for (const char* key :
+       {"meshes", "skins", "materials", "textures", "images", "samplers", "animations", "accessors",
+        "bufferViews", "buffers", "extensions", "extensionsUsed", "extensionsRequired"})
     json.erase(key);
   for (Json& node : json["nodes"])
     for (const char* key : {"mesh", "skin", "weights", "extensions"}) node.erase(key);
@@ -231,11 +237,13 @@ void add_world_root(Json& json, const Skeleton& skeleton, const Similarity& worl
   scene["nodes"] = Json::array({world});
 }
 
-// ---- the figure of a skeleton without a mesh --------------------------------------------------------------------
+// ---- the figure of a skeleton without a mesh
+// --------------------------------------------------------------------
 
 Json bounds(const std::vector<Eigen::Vector3f>& points, bool upper) {
   Eigen::Vector3f result = points.front();
-  for (const Eigen::Vector3f& p : points) result = upper ? result.cwiseMax(p).eval() : result.cwiseMin(p).eval();
+  for (const Eigen::Vector3f& p : points)
+    result = upper ? result.cwiseMax(p).eval() : result.cwiseMin(p).eval();
   return {result.x(), result.y(), result.z()};
 }
 
@@ -278,13 +286,15 @@ void add_figure(Edit& edit, const Character& character, const Humanoid& humanoid
       append(array_of(json, "meshes"),
              {{"name", "figure"},
               {"primitives", Json::array({{{"attributes", attributes}, {"material", material}}})}});
-  const std::size_t skin = append(array_of(json, "skins"), {{"inverseBindMatrices", binds}, {"joints", joints}});
+  const std::size_t skin =
+      append(array_of(json, "skins"), {{"inverseBindMatrices", binds}, {"joints", joints}});
   const std::size_t node = append(json["nodes"], {{"name", "figure"}, {"mesh", mesh}, {"skin", skin}});
   // A skinned mesh ignores its parents, so it stands beside the skeleton.
   array_of(default_scene(json, character.skeleton), "nodes").push_back(node);
 }
 
-// ---- the animation -------------------------------------------------------------------------------------------
+// ---- the animation
+// -------------------------------------------------------------------------------------------
 
 std::string unique_name(const Json& animations, const std::string& wanted) {
   std::set<std::string> taken;
@@ -306,8 +316,8 @@ std::vector<float> as_floats(const std::vector<double>& values) {
 struct TimePool {
   std::vector<float> values;
   std::vector<std::vector<float>> lists;
-  std::vector<std::size_t> offsets;     // of each list in values
-  std::vector<std::size_t> of_track;    // list of each track
+  std::vector<std::size_t> offsets;   // of each list in values
+  std::vector<std::size_t> of_track;  // list of each track
 };
 
 TimePool pool_times(const std::vector<Track>& tracks) {
@@ -347,7 +357,8 @@ std::vector<std::size_t> add_time_accessors(Edit& edit, const TimePool& pool) {
   const std::size_t view = add_view(edit, pool.values);
   for (std::size_t i = 0; i < pool.lists.size(); ++i) {
     const std::vector<float>& times = pool.lists[i];
-    accessors.push_back(add_accessor(edit, view, pool.offsets[i] * sizeof(float), kFloat, times.size(), "SCALAR"));
+    accessors.push_back(
+        add_accessor(edit, view, pool.offsets[i] * sizeof(float), kFloat, times.size(), "SCALAR"));
     edit.json["accessors"].back()["min"] = Json::array({times.front()});
     edit.json["accessors"].back()["max"] = Json::array({times.back()});
   }
@@ -379,7 +390,8 @@ void add_animation(Edit& edit, const ReducedClip& clip, const std::string& extra
     const std::size_t output =
         add_accessor(edit, view, offset, kFloat, track.times.size(), rotation ? "VEC4" : "VEC3");
     offset += track.values.size() * sizeof(float);
-    const Json sampler = {{"input", inputs[pool.of_track[i]]}, {"interpolation", "LINEAR"}, {"output", output}};
+    const Json sampler = {
+        {"input", inputs[pool.of_track[i]]}, {"interpolation", "LINEAR"}, {"output", output}};
     channels.push_back({{"sampler", append(samplers, sampler)},
                         {"target", {{"node", track.node}, {"path", path_name(track.path)}}}});
   }
@@ -391,23 +403,31 @@ void add_animation(Edit& edit, const ReducedClip& clip, const std::string& extra
   animations.push_back(std::move(animation));
 }
 
-// ---- the whole -----------------------------------------------------------------------------------------------
+// ---- the whole
+// -----------------------------------------------------------------------------------------------
 
 /// The clip's tracks fit the document and are fit for glTF.
 Status check(const Json& json, const Character& character, const ReducedClip& clip) {
   const auto nodes = json.find("nodes");
   if (nodes == json.end() || !nodes->is_array() || nodes->size() != character.skeleton.nodes.size())
-    return document_error(character, "the document's nodes are not those of the skeleton", "load the file again");
+    return document_error(character, "the document's nodes are not those of the skeleton",
+                          "load the file again");
   if (clip.tracks.empty()) return document_error(character, "the clip is empty", "bake at least one frame");
   for (const Track& track : clip.tracks) {
     const std::vector<float> times = as_floats(track.times);
     const std::size_t width = track.path == TrackPath::rotation ? 4 : 3;
     const bool rising = std::is_sorted(times.begin(), times.end(), std::less_equal<>());
-    const bool finite = std::all_of(track.values.begin(), track.values.end(), [](double v) { return std::isfinite(v); });
+    const bool finite =
+        std::all_of(track.values.begin(), track.values.end(), [](double v) { return std::isfinite(v); });
     if (track.node < 0 || track.node >= character.skeleton.size() || times.empty() || !rising || !finite ||
         track.values.size() != times.size() * width)
-      return Error{ErrorKind::internal, character.path.string(), 0, 0,
-                   track.node >= 0 && track.node < character.skeleton.size() ? character.skeleton.label(track.node) : "",
+      return Error{ErrorKind::internal,
+                   character.path.string(),
+                   0,
+                   0,
+                   track.node >= 0 && track.node < character.skeleton.size()
+                       ? character.skeleton.label(track.node)
+                       : "",
                    "the clip's keys are not finite, not one value per time or not in order of time",
                    "report this as a bug"};
   }
@@ -467,7 +487,8 @@ Result<std::string> write_gltf(const Character& character, const Humanoid& human
   auto edit = edited(character, humanoid, clip, options, open_for_gltf);
   if (!edit) return edit.error();
   array_of(edit->json, "buffers")
-      .push_back({{"byteLength", edit->bin.size()}, {"uri", data_uri("application/octet-stream", edit->bin)}});
+      .push_back(
+          {{"byteLength", edit->bin.size()}, {"uri", data_uri("application/octet-stream", edit->bin)}});
   return edit->json.dump(2) + '\n';
 }
 

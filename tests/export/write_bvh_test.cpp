@@ -1,0 +1,172 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "export/export.h"
+#include "export/puppet.h"
+#include "load/load.h"
+
+namespace ukemi {
+namespace {
+
+constexpr const char* kSource = R"(HIERARCHY
+ROOT Hips of mine
+{
+	OFFSET 1 2 3
+	CHANNELS 6 Zrotation Xrotation Yrotation Xposition Yposition Zposition
+	JOINT Spine
+	{
+		OFFSET 0 10.25 0
+		CHANNELS 3 Yrotation Zrotation Xrotation
+		JOINT Hinge
+		{
+			OFFSET 0 5 0.1
+			CHANNELS 1 Xrotation
+			End Site
+			{
+				OFFSET 0 3 0
+			}
+		}
+		JOINT Fixed
+		{
+			OFFSET 4 0 0
+			CHANNELS 0
+			JOINT Slider
+			{
+				OFFSET 1 1 1
+				CHANNELS 6 Zposition Xposition Yposition Yrotation Xrotation Zrotation
+				End Site
+				{
+					OFFSET -1e-05 0 2
+				}
+			}
+		}
+	}
+}
+MOTION
+Frames: 2
+Frame Time: 0.008333333333333333
+10 20 30 1 2 3 40 50 60 70 5 6 7 -10 -20 -30
+11 21 31 1 2 3 41 51 61 71 5 6 8 -11 -21 -31
+)";
+
+Character load(const std::string& text) {
+  Diagnostics diagnostics;
+  auto character = read_bvh(text, "source.bvh", diagnostics);
+  if (!character) throw std::runtime_error(character.error().message());
+  return std::move(*character);
+}
+
+Clip own_clip(const Character& character) {
+  return sample_clip(character.skeleton, character.animations[0], character.animations[0].fps);
+}
+
+double largest_turn_deg(const Clip& a, const Clip& b) {
+  double largest = a.frames.size() == b.frames.size() ? 0.0 : 180.0;
+  for (std::size_t f = 0; f < std::min(a.frames.size(), b.frames.size()); ++f)
+    for (std::size_t i = 0; i < a.frames[f].size(); ++i)
+      largest = std::max(largest, degrees(angle_between(a.frames[f][i].rotation, b.frames[f][i].rotation)));
+  return largest;
+}
+
+TEST(WriteBvh, WritesASourceBackAsItWas) {
+  const Character character = load(kSource);
+  const auto text = write_bvh(character, {}, own_clip(character), {});
+  ASSERT_TRUE(text);
+  const std::string_view source = kSource;
+  EXPECT_EQ(text->substr(0, text->find("Frame Time")), source.substr(0, source.find("Frame Time")))
+      << "names, offsets, channels and End Sites";
+  const Character again = load(*text);
+  ASSERT_EQ(again.bvh->frames.size(), 2u);
+  for (std::size_t f = 0; f < 2; ++f)
+    for (std::size_t c = 0; c < again.bvh->frames[f].size(); ++c)
+      EXPECT_NEAR(again.bvh->frames[f][c], character.bvh->frames[f][c], 1e-12) << f << ' ' << c;
+  EXPECT_DOUBLE_EQ(again.bvh->frame_time_s, 1.0 / 120);
+}
+
+TEST(WriteBvh, GivesTheSameRotationsToAMillionthOfADegree) {
+  Character character = load(kSource);
+  character.bvh->channels[2] = character.bvh->channels[1];  // the hinge turns freely
+  character.bvh->channels[3] = {};
+  Clip clip = test::falling_clip(character.skeleton, 300);
+  for (Pose& pose : clip.frames) pose[3].rotation = Quat::Identity();
+  const auto text = write_bvh(character, {}, clip, {});
+  ASSERT_TRUE(text);
+  EXPECT_LT(largest_turn_deg(own_clip(load(*text)), clip), 1e-6);
+}
+
+TEST(WriteBvh, LetsAnglesRunOnInsteadOfJumping) {
+  Character character = load(kSource);
+  Clip clip{"spin", 60, {}, {}};
+  for (int f = 0; f < 240; ++f) {
+    clip.frames.push_back(rest_pose(character.skeleton));
+    clip.frames.back()[0].rotation = exp_rotation(Vec3(0.1, 1.0, 0.2).normalized() * (0.08 * f));
+  }
+  const auto text = write_bvh(character, {}, clip, {});
+  ASSERT_TRUE(text);
+  const Character again = load(*text);
+  double largest = 0.0;
+  for (std::size_t f = 1; f < again.bvh->frames.size(); ++f)
+    for (std::size_t c = 0; c < 3; ++c)
+      largest = std::max(largest, std::abs(again.bvh->frames[f][c] - again.bvh->frames[f - 1][c]));
+  EXPECT_LT(largest, 12.0) << "4.6 degrees of turn per frame";
+  EXPECT_GT(again.bvh->frames.back()[2], 1000.0);
+}
+
+TEST(WriteBvh, BuildsItsOwnHierarchyForOtherSources) {
+  test::Puppet puppet = test::make_puppet();
+  const Skeleton& skeleton = puppet.character.skeleton;
+  const Clip clip = test::falling_clip(skeleton);
+  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {});
+  ASSERT_TRUE(text);
+  const Character bvh = load(*text);
+  EXPECT_EQ(bvh.skeleton.size(), 20) << "the nodes of the chains";
+  EXPECT_TRUE(bvh.skeleton.nodes[0].rest.translation.isZero());
+  EXPECT_EQ(bvh.bvh->channels[0].size(), 6u);
+  for (int i = 1; i < bvh.skeleton.size(); ++i) EXPECT_EQ(bvh.bvh->channels[i].size(), 3u);
+  const Clip read = own_clip(bvh);
+  ASSERT_EQ(read.frames.size(), clip.frames.size());
+  double largest_m = 0.0;
+  for (std::size_t f = 0; f < clip.frames.size(); ++f) {
+    const auto wanted = world_transforms(skeleton, clip.frames[f]);
+    const auto seen = world_transforms(bvh.skeleton, read.frames[f]);
+    for (int i = 0; i < bvh.skeleton.size(); ++i) {
+      const int node = skeleton.find(bvh.skeleton.nodes[i].name);
+      ASSERT_GE(node, 0);
+      largest_m = std::max(largest_m, (0.01 * seen[i].translation() - wanted[node].translation()).norm());
+    }
+  }
+  EXPECT_LT(largest_m, 1e-12);
+}
+
+TEST(WriteBvh, HangsDetachedFeetOnTheSegmentAbove) {
+  test::Puppet puppet = test::make_puppet();
+  Skeleton& skeleton = puppet.character.skeleton;
+  const int foot = skeleton.find("LeftFoot");
+  const Affine rest = world_transforms(skeleton, rest_pose(skeleton))[foot];
+  skeleton.nodes[foot].parent = -1;
+  skeleton.nodes[foot].rest = {rest.translation(), rotation_part(rest.linear()), Vec3::Constant(0.01)};
+  ASSERT_TRUE(skeleton.sort());
+  puppet.humanoid.reference = rest_pose(skeleton);
+  puppet.humanoid.segments[index(Segment::foot_l)].detached = true;
+  const auto text =
+      write_bvh(puppet.character, puppet.humanoid, {"still", 30, {rest_pose(skeleton)}, {}}, {});
+  ASSERT_TRUE(text);
+  const Character bvh = load(*text);
+  const int written = bvh.skeleton.find("LeftFoot");
+  ASSERT_GE(written, 0);
+  EXPECT_EQ(bvh.skeleton.nodes[bvh.skeleton.nodes[written].parent].name, "LeftLeg");
+  EXPECT_LT((bvh.skeleton.nodes[written].rest.translation - Vec3(0, -42, -2)).norm(), 1e-9);
+}
+
+TEST(WriteBvh, RefusesAClipThatIsNotOfTheSkeleton) {
+  const test::Puppet puppet = test::make_puppet();
+  EXPECT_FALSE(write_bvh(puppet.character, puppet.humanoid, {"empty", 60, {}, {}}, {}));
+  EXPECT_FALSE(write_bvh(puppet.character, puppet.humanoid, {"other", 60, {Pose(3)}, {}}, {}));
+  EXPECT_FALSE(write_bvh(puppet.character, {}, test::falling_clip(puppet.character.skeleton, 2), {}));
+}
+
+}  // namespace
+}  // namespace ukemi
