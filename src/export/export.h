@@ -38,7 +38,7 @@ struct GltfOptions {
   std::string extras_json;  // written as the animation's "extras" when not empty
   /// Where the file will lie. Links of a .gltf to files beside it are kept when this is the source's folder;
   /// otherwise (and when not given) what they link to is embedded.
-  std::optional<std::filesystem::path> folder;
+  std::optional<std::filesystem::path> folder{};
 };
 
 /// The character's document plus one animation, as the bytes of a .glb or the text of a .gltf. Everything
