@@ -54,16 +54,23 @@ struct Humanoid {
   /// Axes in the neutral pose (upright, arms hanging, palms to the thighs, feet forward): x anterior, y up,
   /// z to the subject's right, the same for all segments.
   PerSegment<Quat> node_from_segment;
+  /// Origin of a fused segment in the node of the segment it moves with (see carrier); zero for the others.
+  PerSegment<Vec3> fused_origin{};
   /// Further nodes that shapes and poses need; -1 where there are none.
   int head_top = -1;
-  std::array<int, 2> toes{-1, -1};          // left, right
+  std::array<int, 2> toes{-1, -1};           // left, right
   std::array<int, 2> middle_finger{-1, -1};  // base of the middle finger (or of the only one)
+
+  /// The segment that moves `s`: itself, or where it is fused the nearest one above that is not.
+  Segment carrier(Segment s) const;
+  int carrier_node(Segment s) const { return segments[index(carrier(s))].node(); }
 };
 
 /// Finds the segments by the user's map, VRM human bones, names, then topology and geometry; then unit, up
 /// axis and anatomical frames (from the rest pose; a file with only motion may need its first frame).
 /// Errors: input, "not a humanoid: ..." with what was looked for and what was found; usage for a bad map.
-Result<Humanoid> map_humanoid(const Character& character, const HumanoidOptions& options, Diagnostics& diagnostics);
+Result<Humanoid> map_humanoid(const Character& character, const HumanoidOptions& options,
+                              Diagnostics& diagnostics);
 
 /// Segments of a pose. Origin: the joint above the segment (the mean of its chain's nodes; pelvis: midway
 /// between the hip joints), metres, y-up world. Axes: anatomical, see Humanoid::node_from_segment.
@@ -73,9 +80,9 @@ using BodyPose = PerSegment<Rigid>;
 /// Segments of `pose` as the rig's nodes have them.
 BodyPose segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose);
 
-/// The same with the free rolls chosen like a human body: the forearm takes the hand's twist, the trunk's bend
-/// is split 0.46/0.54/0.30, upper arm and thigh are rolled into the plane of elbow and knee, the shank takes
-/// 60 % of the toe-out. Positions are unchanged.
+/// The same with the free rolls chosen like a human body: the forearm takes the hand's twist, the trunk's
+/// bend is split 0.46/0.54/0.30, upper arm and thigh are rolled into the plane of elbow and knee, the shank
+/// takes 60 % of the toe-out. Positions are unchanged.
 BodyPose canonical_segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose);
 
 /// Poses the skeleton: `base`, with every segment turned and the pelvis moved by what takes `from` (the

@@ -1,0 +1,52 @@
+// The bones of the limbs, pelvis and head: found by the user's map, VRM, names, then topology.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "base/character.h"
+#include "base/result.h"
+#include "base/segments.h"
+#include "humanoid/humanoid.h"
+
+namespace ukemi {
+
+/// One node per segment (the last of its chain), -1 where there is none, and how it was found. The user may
+/// name abdomen and chest; otherwise they follow from the hierarchy.
+struct Bones {
+  PerSegment<int> node;
+  PerSegment<std::string> by;
+
+  Bones() { node.fill(-1); }
+  int operator[](Segment s) const { return node[index(s)]; }
+  void set(Segment s, int n, const std::string& how) {
+    node[index(s)] = n;
+    by[index(s)] = how;
+  }
+};
+
+/// Which nodes may be bones: all, or where the file has skins those that a skin names (1) rather than others
+/// (0).
+std::vector<char> skin_joints(const Character& character);
+
+/// Every source in turn. Errors: usage for a bad user map; input when the must-have bones (pelvis, head,
+/// upper arms, forearms, thighs, shanks) are not there.
+Result<Bones> find_bones(const Character& character, const HumanoidOptions& options);
+
+/// The bones by shape alone: a trunk with two mirrored legs below and two mirrored arms above.
+/// Empty (all -1) when there is none.
+Bones find_by_topology(const Character& character, const Pose& pose);
+
+/// An Error of kind input about the character's file.
+Error input_error(const Character& character, std::string what, std::string fix);
+
+/// Lowest common ancestor (a node is its own ancestor); -1 when there is none.
+int common_ancestor(const Skeleton& skeleton, int a, int b);
+inline bool is_at_or_below(const Skeleton& skeleton, int top, int node) {
+  return top == node || skeleton.is_ancestor(top, node);
+}
+/// Nodes from `top` (exclusive) down to `node` (inclusive), top first; empty when `node` is not below `top`.
+std::vector<int> path_below(const Skeleton& skeleton, int top, int node);
+
+}  // namespace ukemi

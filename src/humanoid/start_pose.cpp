@@ -1,0 +1,189 @@
+// Standing poses, built as segment rotations on the figure of the reference pose.
+#include <algorithm>
+#include <cmath>
+
+#include "humanoid/humanoid.h"
+#include "humanoid/skin.h"
+
+namespace ukemi {
+namespace {
+
+Quat about(const Vec3& axis, double degrees_) { return exp_rotation(axis * radians(degrees_)); }
+
+/// An arm, degrees, as for the right side; the left is its mirror.
+struct ArmAngles {
+  double abduction, flexion, internal_rotation, elbow_flexion, pronation;
+  double clavicle_elevation, clavicle_protraction;
+  double wrist_extension;
+};
+/// A leg: where the ankle stands from below its hip, in leg lengths, and how far the foot turns out.
+struct LegStance {
+  double outwards, forwards;
+  double toe_out_deg;
+};
+struct Stance {
+  double pelvis_turn_deg;  // to the left
+  double pelvis_drop;      // hips above the ankles, in leg lengths (at most 1)
+  double trunk_flexion_deg, trunk_turn_deg, neck_flexion_deg, neck_turn_deg;
+  ArmAngles arm_l, arm_r;
+  LegStance leg_l, leg_r;
+};
+
+// Relaxed standing: hip-wide feet, knees not locked.
+constexpr Stance kStand = {0.0,
+                           0.9988,
+                           0.0,
+                           0.0,
+                           0.0,
+                           0.0,
+                           {9.0, 3.0, 4.0, 14.0, 8.0, 0.0, 0.0, 0.0},
+                           {9.0, 3.0, 4.0, 14.0, 8.0, 0.0, 0.0, 0.0},
+                           {0.015, 0.0, 7.0},
+                           {0.015, 0.0, 7.0}};
+// A boxer's guard, left foot forward.
+constexpr Stance kGuard = {-20.0,
+                           0.93,
+                           10.0,
+                           -6.0,
+                           2.0,
+                           25.0,
+                           {14.0, 38.0, 18.0, 116.0, 20.0, 4.0, 6.0, 0.0},
+                           {12.0, 30.0, 22.0, 120.0, 20.0, 4.0, 4.0, 0.0},
+                           {0.08, 0.22, -2.0},
+                           {0.10, -0.22, 18.0}};
+
+struct Figure {
+  const BodyPose& from;
+  BodyPose to;
+
+  const Rigid& at(Segment s) const { return to[index(s)]; }
+  /// Gives the segment its rotation and hangs it on its parent where it was in `from`.
+  void place(Segment s, const Quat& rotation) {
+    const int p = index(parent_of(s));
+    to[index(s)].rotation = rotation;
+    to[index(s)].translation = to[p] * (from[p].inverse() * from[index(s)].translation);
+  }
+  void place_relative(Segment s, const Quat& parent_from_segment) {
+    place(s, at(parent_of(s)).rotation * parent_from_segment);
+  }
+};
+
+Segment on_side(Segment left, bool is_left) { return is_left ? left : mirror_of(left); }
+
+/// Right-hand formulas; `m` mirrors rotations about x and y for the left.
+void place_arm(Figure& figure, const ArmAngles& arm, bool left) {
+  const double m = left ? -1.0 : 1.0;
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+  figure.place_relative(on_side(Segment::clavicle_l, left),
+                        about(y, m * arm.clavicle_protraction) * about(x, -m * arm.clavicle_elevation));
+  // The clavicle carries the arm; its own rotation is taken out so that the angles are those of the trunk.
+  const Quat trunk = figure.at(Segment::chest).rotation;
+  figure.place(
+      on_side(Segment::upperarm_l, left),
+      trunk * about(x, -m * arm.abduction) * about(z, arm.flexion) * about(y, m * arm.internal_rotation));
+  figure.place_relative(on_side(Segment::forearm_l, left),
+                        about(z, arm.elbow_flexion) * about(y, m * arm.pronation));
+  figure.place_relative(on_side(Segment::hand_l, left), about(x, m * arm.wrist_extension));
+}
+
+/// Thigh and shank from the ankle's place (two-bone solution, knee over the foot), the foot flat on the
+/// floor. `heading`: x forward, y up, z right.
+void place_leg(Figure& figure, const LegStance& leg, double drop, const Quat& heading, bool left) {
+  const Segment thigh = on_side(Segment::thigh_l, left), shank = on_side(Segment::shank_l, left),
+                foot = on_side(Segment::foot_l, left);
+  const double outwards = left ? -1.0 : 1.0;
+  figure.place(thigh, figure.at(Segment::pelvis).rotation);
+  const double upper = (figure.from[index(shank)].translation - figure.from[index(thigh)].translation).norm();
+  const double lower = (figure.from[index(foot)].translation - figure.from[index(shank)].translation).norm();
+  const double length = upper + lower;
+  const Quat facing = heading * about(Vec3::UnitY(), -outwards * leg.toe_out_deg);
+  Vec3 reach = heading * (length * Vec3(leg.forwards, -drop, outwards * leg.outwards));
+  if (reach.norm() > 0.9995 * length) reach *= 0.9995 * length / reach.norm();
+  const double d = reach.norm();
+  const Vec3 down = reach / d;
+  Vec3 forward = facing * Vec3::UnitX();
+  forward = (forward - forward.dot(down) * down).normalized();
+  const double bend =
+      std::acos(std::clamp((upper * upper + d * d - lower * lower) / (2.0 * upper * d), -1.0, 1.0));
+  const Vec3 to_knee = std::cos(bend) * down + std::sin(bend) * forward;
+  const Vec3 to_ankle = (reach - upper * to_knee).normalized();
+  const Vec3 right = forward.cross(-down);
+  const auto hanging = [&](const Vec3& link) {
+    Mat3 m;
+    m << (-link).cross(right), -link, right;
+    return Quat(m).normalized();
+  };
+  figure.place(thigh, hanging(to_knee));
+  figure.place(shank, hanging(to_ankle));
+  figure.place(foot, facing);
+}
+
+Quat heading_of(const Quat& pelvis) {
+  const Vec3 forward = pelvis * Vec3::UnitX();
+  return exp_rotation(Vec3(0.0, std::atan2(-forward.z(), forward.x()), 0.0));
+}
+
+BodyPose body_in(const Stance& stance, const BodyPose& from) {
+  Figure figure{from, from};
+  const Vec3 y = Vec3::UnitY(), z = Vec3::UnitZ();
+  const Quat heading = heading_of(from[index(Segment::pelvis)].rotation);
+  figure.to[index(Segment::pelvis)].rotation = heading * about(y, stance.pelvis_turn_deg);
+  // Flexion bends the trunk forwards: about -z.
+  figure.place_relative(Segment::abdomen,
+                        about(z, -0.54 * stance.trunk_flexion_deg) * about(y, 0.3 * stance.trunk_turn_deg));
+  figure.place_relative(Segment::chest,
+                        about(z, -0.46 * stance.trunk_flexion_deg) * about(y, 0.7 * stance.trunk_turn_deg));
+  figure.place_relative(Segment::head, about(z, -stance.neck_flexion_deg) * about(y, stance.neck_turn_deg));
+  place_arm(figure, stance.arm_l, true);
+  place_arm(figure, stance.arm_r, false);
+  place_leg(figure, stance.leg_l, stance.pelvis_drop, heading, true);
+  place_leg(figure, stance.leg_r, stance.pelvis_drop, heading, false);
+  return figure.to;
+}
+
+/// Lowest point of the feet in the world, metres: of the skin around the foot bones, else a guess from the
+/// bones.
+double lowest_sole(const Character& character, const Humanoid& humanoid, const Pose& pose) {
+  const std::vector<Affine> world = world_transforms(character.skeleton, pose);
+  const Vec3 up_in_file = humanoid.world_from_file.rotation.conjugate() * Vec3::UnitY();
+  const int feet[] = {humanoid.carrier_node(Segment::foot_l), humanoid.carrier_node(Segment::foot_r)};
+  std::vector<char> in_foot(character.skeleton.nodes.size(), 0);
+  for (const int i : character.skeleton.order) {
+    const int parent = character.skeleton.nodes[i].parent;
+    in_foot[i] = i == feet[0] || i == feet[1] || (parent >= 0 && in_foot[parent]);
+  }
+  const SkinExtent extent =
+      skin_extent(character, world, up_in_file, [&](int node) { return in_foot[node] != 0; });
+  if (extent.found) return humanoid.world_from_file.scale * extent.min;
+  const BodyPose body = segments_of(character.skeleton, humanoid, pose);
+  double lowest = 1e300;
+  for (int side = 0; side < 2; ++side) {
+    // Ankle centre 0.039 of the height above the sole (de Leva 1996), toe joint about 0.012.
+    const Segment foot = side == 0 ? Segment::foot_l : Segment::foot_r;
+    lowest = std::min(lowest, body[index(foot)].translation.y() - 0.039 * humanoid.height_m);
+    if (humanoid.toes[side] >= 0)
+      lowest = std::min(lowest, (humanoid.world_from_file * world[humanoid.toes[side]].translation()).y() -
+                                    0.012 * humanoid.height_m);
+  }
+  return lowest;
+}
+
+}  // namespace
+
+Pose stand_on_floor(const Character& character, const Humanoid& humanoid, const Pose& pose) {
+  const BodyPose from = segments_of(character.skeleton, humanoid, pose);
+  BodyPose to = from;
+  const double lift = -lowest_sole(character, humanoid, pose);
+  for (Rigid& segment : to) segment.translation.y() += lift;
+  return pose_skeleton(character.skeleton, humanoid, pose, from, to);
+}
+
+Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose kind) {
+  if (kind == StartPose::rest) return stand_on_floor(character, humanoid, humanoid.reference);
+  const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
+  const BodyPose to = body_in(kind == StartPose::stand ? kStand : kGuard, from);
+  return stand_on_floor(character, humanoid,
+                        pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, to));
+}
+
+}  // namespace ukemi

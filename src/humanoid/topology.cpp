@@ -1,0 +1,202 @@
+// The humanoid in an unnamed hierarchy: a fork with two mirrored legs, a second one further up with two
+// mirrored arms and a head between them.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "humanoid/bones.h"
+
+namespace ukemi {
+namespace {
+
+/// The three joints of a limb and its two bone lengths.
+struct LimbShape {
+  int upper = -1, middle = -1, end = -1, last = -1;
+  double upper_length = 0.0, lower_length = 0.0;
+  double length() const { return upper_length + lower_length; }
+};
+
+struct Tree {
+  const Skeleton& skeleton;
+  std::vector<Vec3> position;
+  std::vector<std::vector<int>> children;  // only nodes that may be bones
+  std::vector<double> reach;               // length of the longest path below
+
+  Tree(const Character& character, const Pose& pose) : skeleton(character.skeleton) {
+    const std::vector<Affine> world = world_transforms(skeleton, pose);
+    const std::vector<char> skinned = skin_joints(character);
+    const bool any_skin = std::count(skinned.begin(), skinned.end(), 1) > 0;
+    for (const Affine& m : world) position.push_back(m.translation());
+    children.resize(skeleton.nodes.size());
+    reach.assign(skeleton.nodes.size(), 0.0);
+    for (auto it = skeleton.order.rbegin(); it != skeleton.order.rend(); ++it) {
+      const int parent = skeleton.nodes[*it].parent;
+      if (parent < 0 || (any_skin && !skinned[*it])) continue;
+      children[parent].push_back(*it);
+      reach[parent] = std::max(reach[parent], reach[*it] + (position[*it] - position[parent]).norm());
+    }
+    for (auto& list : children) std::sort(list.begin(), list.end());
+  }
+
+  double between(int a, int b) const { return (position[a] - position[b]).norm(); }
+
+  /// From `node` down along the branch that reaches farthest.
+  std::vector<int> main_path(int node) const {
+    std::vector<int> path{node};
+    while (!children[node].empty()) {
+      node = *std::max_element(children[node].begin(), children[node].end(), [&](int a, int b) {
+        return reach[a] + between(a, path.back()) < reach[b] + between(b, path.back());
+      });
+      path.push_back(node);
+    }
+    return path;
+  }
+};
+
+/// Of all neighbouring triples along the path the one whose two bones are long and of like length: shoulder,
+/// elbow, wrist beat clavicle, shoulder, elbow and elbow, wrist, finger.
+std::optional<LimbShape> limb_at(const Tree& tree, int node) {
+  std::vector<int> path;
+  for (const int next : tree.main_path(node))
+    if (path.empty() || tree.between(path.back(), next) > 0.01 * tree.reach[node]) path.push_back(next);
+  std::optional<LimbShape> best;
+  double best_score = 0.0;
+  for (std::size_t i = 0; i + 2 < path.size(); ++i) {
+    const double a = tree.between(path[i], path[i + 1]), b = tree.between(path[i + 1], path[i + 2]);
+    const double score = std::min(a, b) - 0.5 * std::abs(a - b);
+    if (score <= best_score) continue;
+    best_score = score;
+    best = LimbShape{path[i], path[i + 1], path[i + 2], path.back(), a, b};
+  }
+  return best;
+}
+
+struct Pair {
+  LimbShape a, b;
+  double length() const { return a.length() + b.length(); }
+};
+
+bool alike(double a, double b) { return std::abs(a - b) <= 0.08 * std::max(a, b); }
+
+/// The longest two branches of a fork that mirror each other.
+std::vector<Pair> mirrored_pairs(const Tree& tree, int fork) {
+  std::vector<LimbShape> limbs;
+  for (const int child : tree.children[fork])
+    if (const auto limb = limb_at(tree, child)) limbs.push_back(*limb);
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < limbs.size(); ++i)
+    for (std::size_t j = i + 1; j < limbs.size(); ++j) {
+      const LimbShape &a = limbs[i], &b = limbs[j];
+      const bool apart = tree.between(a.upper, b.upper) > 0.05 * a.length();
+      if (apart && alike(a.upper_length, b.upper_length) && alike(a.lower_length, b.lower_length))
+        pairs.push_back({a, b});
+    }
+  return pairs;
+}
+
+/// The far end of the chain that rises from the arms' fork and is neither arm.
+int head_above(const Tree& tree, int fork, const Pair& arms) {
+  int at = fork, head = -1;
+  for (;;) {
+    std::vector<int> next;
+    for (const int child : tree.children[at])
+      if (!is_at_or_below(tree.skeleton, child, arms.a.upper) &&
+          !is_at_or_below(tree.skeleton, child, arms.b.upper))
+        next.push_back(child);
+    if (next.empty() || (head >= 0 && next.size() > 1)) return head;
+    at = head = *std::max_element(next.begin(), next.end(),
+                                  [&](int a, int b) { return tree.reach[a] < tree.reach[b]; });
+  }
+}
+
+struct Shape {
+  int pelvis = -1, head = -1;
+  Pair legs, arms;
+  double score = 0.0;
+};
+
+/// Legs point away from the trunk, arms do not reach as far down as the legs, all limbs have human
+/// proportions.
+bool plausible(const Tree& tree, const Shape& shape) {
+  const auto& p = tree.position;
+  const Vec3 hips = 0.5 * (p[shape.legs.a.upper] + p[shape.legs.b.upper]);
+  const Vec3 feet = 0.5 * (p[shape.legs.a.end] + p[shape.legs.b.end]);
+  const Vec3 shoulders = 0.5 * (p[shape.arms.a.upper] + p[shape.arms.b.upper]);
+  const Vec3 up = (hips - feet).normalized();
+  const double trunk = (shoulders - hips).norm();
+  const double legs = 0.5 * shape.legs.length(), arms = 0.5 * shape.arms.length();
+  return (shoulders - hips).dot(up) > 0.7 * trunk && (p[shape.head] - hips).dot(up) > 0.5 * trunk &&
+         legs > 0.3 * trunk && arms > 0.3 * trunk && arms < 2.5 * legs && legs < 6.0 * trunk;
+}
+
+/// True when a is on the subject's left: the feet point forward, else glTF's +z (z up: -y) is forward.
+bool first_is_left(const Tree& tree, const Shape& shape) {
+  const auto& p = tree.position;
+  const Vec3 hips = 0.5 * (p[shape.legs.a.upper] + p[shape.legs.b.upper]);
+  const Vec3 ankles = 0.5 * (p[shape.legs.a.end] + p[shape.legs.b.end]);
+  const Vec3 up = (hips - ankles).normalized();
+  Vec3 forward = 0.5 * (p[shape.legs.a.last] + p[shape.legs.b.last]) - ankles;
+  forward -= forward.dot(up) * up;
+  if (forward.norm() < 0.02 * shape.legs.length())
+    forward = std::abs(up.z()) > std::abs(up.y()) ? Vec3(0, -1, 0) : Vec3(0, 0, 1);
+  const Vec3 right = forward.cross(up);
+  return (p[shape.legs.a.upper] - p[shape.legs.b.upper]).dot(right) < 0.0;
+}
+
+std::optional<Shape> best_shape(const Tree& tree) {
+  std::vector<std::pair<int, Pair>> forks;
+  for (const int node : tree.skeleton.order)
+    for (const Pair& pair : mirrored_pairs(tree, node)) forks.emplace_back(node, pair);
+  std::optional<Shape> best;
+  for (const auto& [lower, legs] : forks)
+    for (const auto& [upper, arms] : forks) {
+      if (!tree.skeleton.is_ancestor(lower, upper)) continue;
+      const bool trunk_is_a_leg = is_at_or_below(tree.skeleton, legs.a.upper, upper) ||
+                                  is_at_or_below(tree.skeleton, legs.b.upper, upper);
+      if (trunk_is_a_leg) continue;
+      Shape shape{lower, head_above(tree, upper, arms), legs, arms, legs.length() + arms.length()};
+      if (shape.head < 0 || !plausible(tree, shape)) continue;
+      if (!best || shape.score > best->score) best = shape;
+    }
+  return best;
+}
+
+void set_limb(Bones& bones, const LimbShape& limb, Segment upper, Segment middle, Segment end) {
+  bones.set(upper, limb.upper, "topology");
+  bones.set(middle, limb.middle, "topology");
+  bones.set(end, limb.end, "topology");
+}
+
+}  // namespace
+
+Bones find_by_topology(const Character& character, const Pose& pose) {
+  const Tree tree(character, pose);
+  Bones bones;
+  const auto shape = best_shape(tree);
+  if (!shape) return bones;
+  const bool left_first = first_is_left(tree, *shape);
+  const auto& [leg_l, leg_r] =
+      left_first ? std::pair(shape->legs.a, shape->legs.b) : std::pair(shape->legs.b, shape->legs.a);
+  const Vec3 right = tree.position[leg_r.upper] - tree.position[leg_l.upper];
+  const bool arm_a_right =
+      (tree.position[shape->arms.a.upper] - tree.position[shape->arms.b.upper]).dot(right) > 0.0;
+  const auto& [arm_l, arm_r] =
+      arm_a_right ? std::pair(shape->arms.b, shape->arms.a) : std::pair(shape->arms.a, shape->arms.b);
+  bones.set(Segment::pelvis, shape->pelvis, "topology");
+  bones.set(Segment::head, shape->head, "topology");
+  set_limb(bones, leg_l, Segment::thigh_l, Segment::shank_l, Segment::foot_l);
+  set_limb(bones, leg_r, Segment::thigh_r, Segment::shank_r, Segment::foot_r);
+  set_limb(bones, arm_l, Segment::upperarm_l, Segment::forearm_l, Segment::hand_l);
+  set_limb(bones, arm_r, Segment::upperarm_r, Segment::forearm_r, Segment::hand_r);
+  const std::vector<char> skinned = skin_joints(character);
+  for (const auto& [arm, clavicle] :
+       {std::pair(arm_l, Segment::clavicle_l), std::pair(arm_r, Segment::clavicle_r)}) {
+    const int above = character.skeleton.nodes[arm.upper].parent;
+    const bool other_arm_below = is_at_or_below(character.skeleton, above, arm_l.upper) &&
+                                 is_at_or_below(character.skeleton, above, arm_r.upper);
+    if (above >= 0 && !other_arm_below) bones.set(clavicle, above, "topology");
+  }
+  return bones;
+}
+
+}  // namespace ukemi
