@@ -114,8 +114,27 @@ def monotone(xs, ys):
     return curve
 
 
+def spline(xs, ys):
+    """Interpolating natural cubic spline: curvature is continuous and zero at the ends."""
+    n = len(xs)
+    h = [b - a for a, b in zip(xs, xs[1:])]
+    bends = [0.0] * n  # second derivatives
+    for _ in range(200):  # Gauss-Seidel; the system is diagonally dominant
+        for i in range(1, n - 1):
+            right = 6.0 * ((ys[i + 1] - ys[i]) / h[i] - (ys[i] - ys[i - 1]) / h[i - 1])
+            bends[i] = (right - h[i - 1] * bends[i - 1] - h[i] * bends[i + 1]) / (2.0 * (h[i - 1] + h[i]))
+
+    def curve(x):
+        x = min(max(x, xs[0]), xs[-1])
+        i = next(k for k in range(n - 1) if x <= xs[k + 1] or k == n - 2)
+        a, b = (xs[i + 1] - x) / h[i], (x - xs[i]) / h[i]
+        return a * ys[i] + b * ys[i + 1] + ((a**3 - a) * bends[i] + (b**3 - b) * bends[i + 1]) * h[i] ** 2 / 6.0
+
+    return curve
+
+
 def periodic(xs, ys):
-    """Smooth closed curve of period 1 through (x, y), x in [0, 1) (periodic cubic spline, natural smoothness C2)."""
+    """Smooth closed curve of period 1 through (x, y), x in [0, 1) (cubic spline with continuous curvature)."""
     n = len(xs)
     h = [(xs[(i + 1) % n] - xs[i]) % 1.0 for i in range(n)]
     d = [(ys[(i + 1) % n] - ys[i]) / h[i] for i in range(n)]

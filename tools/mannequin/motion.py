@@ -105,7 +105,7 @@ def relaxed_hand():
 
 def idle_pose(phase):
     wave, late = math.sin(2 * math.pi * phase), math.sin(2 * math.pi * phase - 0.8)
-    pose = {"translation": (0.003 * wave, REST["Hips"][1] - 0.010, 0.002 * late), "Hips": turn("z", 0.25 * wave)}
+    pose = {"translation": (0.003 * wave, REST["Hips"][1] - 0.004, 0.002 * late), "Hips": turn("z", 0.25 * wave)}
     pelvis = (pose["translation"], pose["Hips"])
     for side, place in (("Left", lambda p: p), ("Right", mirror)):
         yaw = turn("y", 9.0 if side == "Left" else -9.0)

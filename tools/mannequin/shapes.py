@@ -2,16 +2,21 @@
 
 import math
 
-from mannequin.maths import add, cross, dot, length, mirror, monotone, scale, sub, unit
+from mannequin.maths import add, cross, dot, mirror, scale, spline, sub, unit
 
 
 class Piece:
-    """Closed triangle mesh with one normal per vertex. `grain` is each vertex's place in the wood: (along, around) 0..1."""
+    """Closed triangle mesh with one normal per vertex.
 
-    def __init__(self, positions, triangles, grain):
+    grain: each vertex's place in the wood: metres along the axis, radians around it (None at the ends of the axis).
+    girth: the longest way around, metres.
+    """
+
+    def __init__(self, positions, triangles, grain, girth):
         self.positions = positions
         self.triangles = triangles
         self.grain = grain
+        self.girth = girth
         if self._volume() < 0.0:
             self.triangles = [(a, c, b) for a, b, c in triangles]
 
@@ -32,21 +37,25 @@ class Piece:
 
     def moved(self, change):
         """The piece with `change` applied to every position."""
-        return Piece([change(p) for p in self.positions], self.triangles, self.grain)
+        return Piece([change(p) for p in self.positions], self.triangles, self.grain, self.girth)
 
     def mirrored(self):
         return self.moved(mirror)
 
 
-def _ring_stations(total, cap_start, cap_end, rings):
-    """(distance along the axis, factor on the radius) of each ring; the caps are quarter ellipses."""
-    in_cap = 3 if rings < 12 else 4
-    start = [(cap_start * (1 - math.cos(a)), math.sin(a)) for a in _quarter(in_cap)]
-    end = [(total - cap_end * (1 - math.cos(a)), math.sin(a)) for a in reversed(_quarter(in_cap))]
-    middle = rings - 2 * in_cap
-    first, last = cap_start, total - cap_end
-    body = [(first + (last - first) * (i + 1) / (middle + 1), 1.0) for i in range(middle)]
-    return start + body + end
+def _ring_stations(total, caps, radii, rings):
+    """(distance along the axis, factor on the radius) of each ring: evenly spaced over the surface.
+
+    The ends are quarter ellipses of the lengths `caps`; `radii` are the surface's there.
+    """
+    arcs = [math.pi / 2 * math.sqrt((cap * cap + radius * radius) / 2) for cap, radius in zip(caps, radii)]
+    body = total - sum(caps)
+    spacing = (sum(arcs) + body) / (rings + 1)
+    start, end = (max(2, round(arc / spacing)) for arc in arcs)
+    between = max(1, round(body / spacing))
+    rows = [(caps[0] * (1 - math.cos(a)), math.sin(a)) for a in _quarter(start)]
+    rows += [(caps[0] + body * (i + 1) / between, 1.0) for i in range(between - 1)]
+    return rows + [(total - caps[1] * (1 - math.cos(a)), math.sin(a)) for a in reversed(_quarter(end))]
 
 
 def _quarter(count):
@@ -67,14 +76,15 @@ def loft(origin, axis, front, stations, caps, rings=12, sectors=16, roundness=1.
     side = unit(cross(axis, front))
     front = cross(side, axis)
     rows = list(zip(*stations))
-    width, ahead, behind = (monotone(rows[0], rows[k]) for k in (1, 2, 3))
+    width, ahead, behind = (spline(rows[0], rows[k]) for k in (1, 2, 3))
     total = rows[0][-1]
 
     def centre(s):
         return add(add(origin, scale(axis, s)), scale(front, -bend * s * s))
 
-    positions, grain = [centre(0.0)], [(0.0, 0.0)]
-    ring_stations = _ring_stations(total, caps[0], caps[1], rings)
+    positions, grain = [centre(0.0)], [(0.0, None)]
+    radii = [(2 * row[1] + row[2] + row[3]) / 4 for row in (stations[0], stations[-1])]
+    ring_stations = _ring_stations(total, caps, radii, rings)
     for s, factor in ring_stations:
         for k in range(sectors):
             around = 2 * math.pi * k / sectors
@@ -85,8 +95,9 @@ def loft(origin, axis, front, stations, caps, rings=12, sectors=16, roundness=1.
             positions.append(add(centre(s), add(scale(side, x), scale(front, z))))
             grain.append((s, around))
     positions.append(centre(total))
-    grain.append((total, 0.0))
-    return Piece(positions, _lathe_triangles(len(ring_stations), sectors), grain)
+    grain.append((total, None))
+    girth = math.pi * max(2 * w + f + b for _, w, f, b in stations) / 2
+    return Piece(positions, _lathe_triangles(len(ring_stations), sectors), grain, girth)
 
 
 def _power(value, exponent):
@@ -109,7 +120,7 @@ def _lathe_triangles(rings, sectors):
 
 def ball(centre, radii, sectors=12, rings=7):
     """Ellipsoid with radii along x, y and z."""
-    positions, grain = [add(centre, (0.0, -radii[1], 0.0))], [(0.0, 0.0)]
+    positions, grain = [add(centre, (0.0, -radii[1], 0.0))], [(0.0, None)]
     for i in range(rings):
         latitude = math.pi * ((i + 1) / (rings + 1) - 0.5)
         for k in range(sectors):
@@ -118,8 +129,8 @@ def ball(centre, radii, sectors=12, rings=7):
             positions.append(add(centre, tuple(r * d for r, d in zip(radii, direction))))
             grain.append((radii[1] * (1 + math.sin(latitude)), a))
     positions.append(add(centre, (0.0, radii[1], 0.0)))
-    grain.append((2 * radii[1], 0.0))
-    return Piece(positions, _lathe_triangles(rings, sectors), grain)
+    grain.append((2 * radii[1], None))
+    return Piece(positions, _lathe_triangles(rings, sectors), grain, math.pi * (radii[0] + radii[2]))
 
 
 def bump(piece, centre, size, push):
@@ -131,5 +142,3 @@ def bump(piece, centre, size, push):
 
     return piece.moved(change)
 
-
-__all__ = ["Piece", "ball", "bump", "length", "loft"]
