@@ -28,7 +28,7 @@ struct Shot {
   const Character* character = nullptr;
   const Humanoid* humanoid = nullptr;
   const Clip* clip = nullptr;
-  const ArticulatedBody* body = nullptr;         // segment shapes: drawn with `shapes`, or where there is no mesh
+  const ArticulatedBody* body = nullptr;  // segment shapes: drawn with `shapes`, or where there is no mesh
   const std::vector<BodyPose>* segments = nullptr;  // one per frame, where shapes are drawn
   const std::vector<Prop>* props = nullptr;
   Vec3 impact_point = Vec3::Zero();

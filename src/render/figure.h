@@ -1,0 +1,45 @@
+// The character of a shot as triangles, frame by frame.
+#pragma once
+
+#include <vector>
+
+#include "render/geometry.h"
+#include "render/render.h"
+
+namespace ukemi {
+
+/// What a frame shows. The overlay is drawn over everything else, see-through.
+struct FrameGeometry {
+  Geometry solid;
+  Geometry overlay;
+};
+
+/// Contract: the shot outlives the figure; every frame of the clip has one transform per node.
+class Figure {
+ public:
+  Figure(const Shot& shot, bool shapes);
+
+  /// Places of the joints, metres: the humanoid's nodes, else the skins' joints, else all nodes.
+  std::vector<Vec3> joints(int frame) const;
+  /// Mesh, shapes or bones alone.
+  Geometry body(int frame) const;
+  /// All of a frame but the floor and the blow's arrow.
+  FrameGeometry geometry(int frame) const;
+  /// Horizontal unit vector in which the figure looks at a frame; zero where nobody knows.
+  Vec3 facing(int frame) const;
+
+ private:
+  void add_mesh(Geometry& geometry, const std::vector<Affine>& world_from_node) const;
+  void add_shapes(Geometry& geometry, int frame, float alpha) const;
+  void add_bones(Geometry& geometry, const std::vector<Affine>& world_from_node) const;
+  void add_props(Geometry& geometry, int frame) const;
+  std::vector<Affine> world(int frame) const;
+
+  const Shot& shot_;
+  Affine world_from_file_;
+  std::vector<int> joint_nodes_;
+  bool mesh_ = false;
+  bool shapes_ = false;
+};
+
+}  // namespace ukemi

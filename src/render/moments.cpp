@@ -1,0 +1,112 @@
+#include "render/moments.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ukemi {
+namespace {
+
+// Standing still counts a little, so that a long rest is not left out.
+constexpr double kIdleSpeed_m_s = 0.05;
+
+/// Mean way of the points from the first frame to each frame, metres.
+std::vector<double> travelled(const Clip& clip, const std::vector<std::vector<Vec3>>& points) {
+  std::vector<double> way(clip.frames.size(), 0.0);
+  for (std::size_t frame = 1; frame < way.size(); ++frame) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < points[frame].size(); ++i)
+      sum += (points[frame][i] - points[frame - 1][i]).norm();
+    const double mean = points[frame].empty() ? 0.0 : sum / static_cast<double>(points[frame].size());
+    way[frame] = way[frame - 1] + mean + kIdleSpeed_m_s / clip.fps;
+  }
+  return way;
+}
+
+int frame_at(const Clip& clip, double time_s) {
+  const auto last = static_cast<long>(clip.frames.size()) - 1;
+  return static_cast<int>(std::clamp(std::lround(time_s * clip.fps), 0L, last));
+}
+
+/// Frames that the sheet must show, most wanted first.
+std::vector<int> wanted_frames(const Clip& clip) {
+  std::vector<int> frames{0};
+  const auto add_marks = [&](auto&& chosen) {
+    for (const Mark& mark : clip.marks)
+      if (chosen(mark.name)) frames.push_back(frame_at(clip, mark.time_s));
+  };
+  add_marks([](const std::string& name) { return name == "impact"; });
+  frames.push_back(static_cast<int>(clip.frames.size()) - 1);
+  add_marks([](const std::string& name) { return name != "impact"; });
+  return frames;
+}
+
+/// Divides the stretches between the fixed frames: each new frame goes where the way per piece is longest.
+std::vector<int> pieces_per_stretch(const std::vector<int>& fixed, const std::vector<double>& way,
+                                    int extra) {
+  std::vector<int> pieces(fixed.size() - 1, 1);
+  for (; extra > 0; --extra) {
+    int best = -1;
+    double best_way = -1.0;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (pieces[i] >= fixed[i + 1] - fixed[i]) continue;
+      const double way_per_piece = (way[fixed[i + 1]] - way[fixed[i]]) / pieces[i];
+      if (way_per_piece > best_way) {
+        best_way = way_per_piece;
+        best = static_cast<int>(i);
+      }
+    }
+    if (best < 0) break;
+    ++pieces[best];
+  }
+  return pieces;
+}
+
+/// Frames strictly between `from` and `to` at equal ways.
+void divide(std::vector<int>& frames, const std::vector<double>& way, int from, int to, int pieces) {
+  int previous = from;
+  for (int piece = 1; piece < pieces; ++piece) {
+    const double target = way[from] + (way[to] - way[from]) * piece / pieces;
+    const auto after = std::lower_bound(way.begin() + from, way.begin() + to, target);
+    int frame = static_cast<int>(after - way.begin());
+    if (frame > from && target - way[frame - 1] < way[frame] - target) --frame;
+    frame = std::clamp(frame, previous + 1, to - (pieces - piece));
+    frames.push_back(frame);
+    previous = frame;
+  }
+}
+
+std::string phase_at(const Clip& clip, int frame) {
+  std::string phase;
+  for (const Mark& mark : clip.marks) {
+    if (frame_at(clip, mark.time_s) != frame) continue;
+    if (!phase.empty()) phase += ", ";
+    for (const char c : mark.name) phase += c == '_' ? ' ' : c;
+  }
+  return phase;
+}
+
+}  // namespace
+
+std::vector<Moment> choose_moments(const Clip& clip, const std::vector<std::vector<Vec3>>& points,
+                                   int count) {
+  std::vector<int> fixed;
+  for (const int frame : wanted_frames(clip))
+    if (static_cast<int>(fixed.size()) < count && std::find(fixed.begin(), fixed.end(), frame) == fixed.end())
+      fixed.push_back(frame);
+  std::sort(fixed.begin(), fixed.end());
+
+  const std::vector<double> way = travelled(clip, points);
+  const std::vector<int> pieces = pieces_per_stretch(fixed, way, count - static_cast<int>(fixed.size()));
+  std::vector<int> frames{fixed.front()};
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    divide(frames, way, fixed[i], fixed[i + 1], pieces[i]);
+    frames.push_back(fixed[i + 1]);
+  }
+
+  std::vector<Moment> moments;
+  for (const int frame : frames) moments.push_back({frame, phase_at(clip, frame)});
+  return moments;
+}
+
+}  // namespace ukemi

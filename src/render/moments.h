@@ -1,0 +1,21 @@
+// Which frames of a clip a contact sheet shows.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/animation.h"
+
+namespace ukemi {
+
+struct Moment {
+  int frame = 0;
+  std::string phase;  // names of the marks at this frame, else empty
+};
+
+/// At most `count` frames in order: the first, the marked ones and the last, then what divides the motion
+/// between them most evenly by the way that the points travel, so that fast parts get more frames.
+/// `points[frame]` are places in metres, as many in every frame. Contract: the clip has a frame, count > 0.
+std::vector<Moment> choose_moments(const Clip& clip, const std::vector<std::vector<Vec3>>& points, int count);
+
+}  // namespace ukemi

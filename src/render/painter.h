@@ -1,0 +1,46 @@
+// Draws frames: figure, props and floor, lit, with shadows.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "render/camera.h"
+#include "render/figure.h"
+#include "render/offscreen.h"
+#include "render/render.h"
+
+namespace ukemi {
+
+struct Theme {
+  Rgba background = srgb(0xF3EFE8);
+  Rgba ground = srgb(0xE9E3D9);
+  Rgba line = srgb(0xB7AC9B, 0.75f);
+};
+
+struct Stage {
+  Camera camera;
+  double floor_y = 0.0;
+  Vec3 focus = Vec3::Zero();  // middle of the action, on the floor
+  double reach = 2.0;         // metres from the focus where the floor begins to fade
+  Theme theme;
+};
+
+/// One off-screen context with pictures of one size.
+class Painter {
+ public:
+  /// `textures`: image i of the character, empty where it is not used. Errors: output.
+  static Result<std::unique_ptr<Painter>> make(int width, int height, const std::vector<Picture>& textures,
+                                               OffscreenKind kind = OffscreenKind::any);
+  ~Painter();
+
+  Picture draw(const FrameGeometry& frame, const Stage& stage);
+
+ private:
+  struct State;
+  explicit Painter(std::unique_ptr<State> state);
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace ukemi

@@ -1,0 +1,117 @@
+#include "render/staging.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ukemi {
+namespace {
+
+constexpr double kElevation = radians(14.0);
+constexpr double kMargin = 0.07;
+constexpr double kFlesh_m = 0.07;        // about a joint, for frames whose skin is not looked at
+constexpr double kFloorSearch_m = 0.25;  // a lowest point this near to y = 0 stands on y = 0
+constexpr double kArrow_m = 0.42;
+constexpr double kArrowTime_s = 0.06;
+const Rgba kArrowColor = srgb(0xC23B22);
+
+Vec3 flat(const Vec3& v) { return {v.x(), 0.0, v.z()}; }
+
+Vec3 mean(const std::vector<Vec3>& points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& point : points) sum += point;
+  return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
+}
+
+/// Horizontal direction of what happens: of the blow, else of the longest way from the start; may be zero.
+Vec3 main_direction(const Shot& shot, const JointPaths& joints) {
+  const Vec3 blow = flat(shot.impact_direction);
+  if (blow.norm() > 0.3 * shot.impact_direction.norm() && blow.norm() > 0.0) return blow.normalized();
+  Vec3 longest = Vec3::Zero();
+  for (const std::vector<Vec3>& frame : joints) {
+    const Vec3 way = flat(mean(frame) - mean(joints.front()));
+    if (way.norm() > longest.norm()) longest = way;
+  }
+  return longest.norm() > 0.4 ? Vec3(longest.normalized()) : Vec3(Vec3::Zero());
+}
+
+/// Horizontal direction from the figure to the camera.
+Vec3 side_to_look_from(const Vec3& direction, const Vec3& facing) {
+  if (direction.isZero()) {
+    const Vec3 front = facing.isZero() ? Vec3(Vec3::UnitZ()) : facing;
+    return Eigen::AngleAxisd(radians(32.0), Vec3::UnitY()) * front;
+  }
+  // Seen from `across`, the direction runs from left to right.
+  Vec3 across = direction.cross(Vec3::UnitY());
+  if (facing.dot(across) < -0.2) across = -across;
+  return (across + 0.55 * facing).normalized();
+}
+
+double floor_height(double lowest) { return std::abs(lowest) <= kFloorSearch_m ? 0.0 : lowest; }
+
+double impact_time(const Clip& clip) {
+  for (const Mark& mark : clip.marks)
+    if (mark.name == "impact") return mark.time_s;
+  return 0.0;
+}
+
+/// How far behind the impact point the arrow ends, metres.
+double arrow_gap(const Shot& shot, int frame) {
+  double gap = 0.02;
+  if (shot.props == nullptr) return gap;
+  for (const Prop& prop : *shot.props) {
+    if (prop.poses.empty() || prop.kind != Prop::Kind::ball) continue;
+    const Rigid& pose = prop.poses[std::min<std::size_t>(frame, prop.poses.size() - 1)];
+    const Vec3 away = pose.translation - shot.impact_point;
+    if (away.norm() < 2.5 * prop.radius)
+      gap = std::max(gap, prop.radius - away.dot(shot.impact_direction) + 0.03);
+  }
+  return gap;
+}
+
+}  // namespace
+
+bool shows_arrow(const Shot& shot, int frame) {
+  const double time = frame / shot.clip->fps;
+  return !shot.impact_direction.isZero() && std::abs(time - impact_time(*shot.clip)) <= kArrowTime_s;
+}
+
+void add_blow_arrow(Geometry& geometry, const Shot& shot, int frame) {
+  Surface surface;
+  surface.casts_shadow = false;
+  surface.gloss = 0.0f;
+  geometry.begin(surface);
+  const Vec3 direction = shot.impact_direction.normalized();
+  add_arrow(geometry, shot.impact_point - arrow_gap(shot, frame) * direction, direction, kArrow_m,
+            kArrowColor);
+}
+
+Stage set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
+                const std::vector<Moment>& moments, double aspect) {
+  Stage stage;
+  stage.camera.aspect = aspect;
+  const Vec3 back = side_to_look_from(main_direction(shot, joints), figure.facing(0));
+  stage.camera.world_from_camera = look(std::atan2(back.x(), back.z()), kElevation);
+
+  Framing framing(stage.camera, kMargin);
+  Eigen::AlignedBox3d all;
+  for (const std::vector<Vec3>& frame : joints)
+    for (const Vec3& joint : frame) {
+      framing.add(joint, kFlesh_m);
+      all.extend(joint);
+    }
+  for (const Moment& moment : moments) {
+    Geometry seen = figure.body(moment.frame);
+    if (shows_arrow(shot, moment.frame)) add_blow_arrow(seen, shot, moment.frame);
+    for (const Vertex& vertex : seen.vertices) {
+      framing.add(vertex.position.cast<double>());
+      all.extend(vertex.position.cast<double>());
+    }
+  }
+  stage.camera = framing.fit();
+  stage.floor_y = floor_height(all.min().y());
+  stage.focus = {all.center().x(), stage.floor_y, all.center().z()};
+  stage.reach = 0.5 * flat(all.sizes()).norm() + 1.0;
+  return stage;
+}
+
+}  // namespace ukemi

@@ -1,0 +1,25 @@
+// Where the camera stands and where the floor lies.
+#pragma once
+
+#include <vector>
+
+#include "render/figure.h"
+#include "render/moments.h"
+#include "render/painter.h"
+
+namespace ukemi {
+
+/// Places of the joints in every frame, metres.
+using JointPaths = std::vector<std::vector<Vec3>>;
+
+/// One stage for all moments: the camera looks across the blow (or, without one, across the way), turned
+/// towards the figure's front, and holds all joints of all frames and all that the moments show.
+Stage set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
+                const std::vector<Moment>& moments, double aspect);
+
+/// The arrow of the blow: it ends at the impact point, or behind the ball that touches it there.
+/// Shown shortly before and after the mark "impact" only.
+bool shows_arrow(const Shot& shot, int frame);
+void add_blow_arrow(Geometry& geometry, const Shot& shot, int frame);
+
+}  // namespace ukemi

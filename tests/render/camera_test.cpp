@@ -1,0 +1,65 @@
+#include "render/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace ukemi {
+namespace {
+
+Camera some_camera(double aspect) {
+  Camera camera;
+  camera.world_from_camera = look(radians(40.0), radians(15.0));
+  camera.aspect = aspect;
+  return camera;
+}
+
+TEST(Camera, looks_down_from_the_side_of_its_azimuth) {
+  const Quat turn = look(radians(90.0), radians(30.0));
+  const Vec3 back = turn * Vec3::UnitZ();
+  EXPECT_NEAR((back - Vec3(std::cos(radians(30.0)), 0.5, 0.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((turn * Vec3::UnitX()).y(), 0.0, 1e-12) << "the horizon is level";
+}
+
+TEST(Camera, projects_as_its_matrix_does) {
+  Camera camera = some_camera(1.3);
+  camera.eye = {1.0, 2.0, 5.0};
+  const Vec3 point(0.3, 0.7, -0.2);
+  const Eigen::Vector4f clip = camera.clip_from_world() * point.cast<float>().homogeneous();
+  const Vec3 projected = camera.project(point);
+  EXPECT_NEAR(clip.x() / clip.w(), projected.x(), 1e-5);
+  EXPECT_NEAR(clip.y() / clip.w(), projected.y(), 1e-5);
+  EXPECT_NEAR(clip.w(), projected.z(), 1e-5);
+}
+
+TEST(Framing, holds_every_point_and_touches_the_margin) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-2.0, 2.0);
+  for (const double aspect : {0.4, 0.9, 2.5}) {
+    Framing framing(some_camera(aspect), 0.1);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 200; ++i) {
+      points.emplace_back(place(random), 0.5 * place(random), place(random));
+      framing.add(points.back());
+    }
+    const Camera camera = framing.fit();
+    double farthest = 0.0;
+    for (const Vec3& point : points) {
+      const Vec3 p = camera.project(point);
+      ASSERT_GT(p.z(), 0.0);
+      farthest = std::max({farthest, std::abs(p.x()), std::abs(p.y())});
+    }
+    EXPECT_NEAR(farthest, 0.9, 1e-9);
+  }
+}
+
+TEST(Framing, of_a_sphere_touches_its_outline) {
+  Camera camera;  // looks along -z, aspect 1
+  Framing framing(camera, 0.0);
+  framing.add(Vec3::Zero(), 0.5);
+  // The cone of half angle a about a sphere of radius r has its tip at r / sin a.
+  EXPECT_NEAR(framing.fit().eye.z(), 0.5 / std::sin(0.5 * camera.vertical_fov), 1e-12);
+}
+
+}  // namespace
+}  // namespace ukemi

@@ -1,0 +1,44 @@
+#include "render/offscreen.h"
+
+#include <gtest/gtest.h>
+
+#include "render/painter.h"
+
+namespace ukemi {
+namespace {
+
+TEST(Offscreen, has_a_context) {
+  const auto context = make_offscreen();
+  ASSERT_TRUE(context) << context.error().message();
+  GLint major = 0;
+  (*context)->gl().GetIntegerv(GL_MAJOR_VERSION, &major);
+  EXPECT_GE(major, 3);
+}
+
+TEST(Offscreen, contexts_follow_each_other) {
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(make_offscreen());
+}
+
+TEST(Offscreen, egl_draws_what_osmesa_draws) {
+  FrameGeometry frame;
+  frame.solid.begin({});
+  add_ball(frame.solid, {}, 0.5, srgb(0xE07A3F), srgb(0x7A3B1D));
+  Stage stage;
+  stage.camera.eye = {0.0, 0.0, 3.0};
+  stage.floor_y = -0.5;
+  std::string reason;
+  if (make_egl(reason) == nullptr) GTEST_SKIP() << "left out: " << reason;
+  std::vector<Picture> pictures;
+  for (const OffscreenKind kind : {OffscreenKind::osmesa, OffscreenKind::egl}) {
+    const auto painter = Painter::make(64, 64, {}, kind);
+    ASSERT_TRUE(painter) << painter.error().message();
+    pictures.push_back((*painter)->draw(frame, stage));
+  }
+  int differing = 0;
+  for (std::size_t i = 0; i < pictures[0].rgba.size(); ++i)
+    differing += std::abs(pictures[0].rgba[i] - pictures[1].rgba[i]) > 8;
+  EXPECT_LT(differing, 40);
+}
+
+}  // namespace
+}  // namespace ukemi
