@@ -1,4 +1,5 @@
-// The articulated body: 18 rigid segments, 17 joints, masses and collision shapes. A description, no engine type.
+// The articulated body: 18 rigid segments, 17 joints, masses and collision shapes. A description, no engine
+// type.
 #pragma once
 
 #include <vector>
@@ -32,7 +33,8 @@ struct BodySegment {
 
 /// Contract:
 /// 1. A fused segment has no joint: it moves rigidly with its parent (its mass and shapes are its own).
-/// 2. anchors are the joint centre in the parent's and in the child's segment frame (the latter is the origin).
+/// 2. anchors are the joint centre in the parent's and in the child's segment frame (the latter is the
+/// origin).
 struct BodyJoint {
   Vec3 anchor_in_parent = Vec3::Zero();
   bool fused = false;
@@ -55,9 +57,10 @@ struct ArticulatedBody {
 };
 
 /// Masses, centres and inertias from de Leva 1996 scaled to the character's joint distances and mass; shapes
-/// fitted to the skin where there is one, to the table otherwise. `pose` and `segments` are the start pose and
-/// its canonical segments: anchors are read from them.
+/// fitted to the skin where there is one, to the table otherwise. `pose` and `segments` are the start pose
+/// and its canonical segments: anchors are read from them.
 Result<ArticulatedBody> build_body(const Character& character, const Humanoid& humanoid, const Pose& pose,
-                                   const BodyPose& segments, const BodyOptions& options, Diagnostics& diagnostics);
+                                   const BodyPose& segments, const BodyOptions& options,
+                                   Diagnostics& diagnostics);
 
 }  // namespace ukemi

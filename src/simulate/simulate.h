@@ -21,13 +21,14 @@ struct SimulationSettings {
   Active active = Active::implicit;
   double active_k = 15.0;         // 1/s; Era et al. eq. (1)
   double active_delay_s = 0.0;    // reaction time of the active restriction
-  double damping = 10.0;          // joint damping, 1/s
+  std::string active_file;        // thresholds; empty: assets/limits/active.toml
+  std::optional<double> damping;  // joint damping, 1/s; default 10 with adaptive steps, 0 with fixed ones
   double fixed_hz = 0.0;          // 0: adaptive steps; else the frozen yardstick at that rate
   double duration_s = 3.0;        // of the simulated part
   double fps = 60.0;              // of the trajectory
   bool stop_at_rest = true;       // hold the pose once everything rests
   bool self_collision = true;
-  double gravity = 9.81;          // m/s^2, downwards
+  double gravity = 9.81;  // m/s^2, downwards
 };
 
 /// The blow. Distances in metres, directions in the world.
@@ -36,11 +37,11 @@ struct Scene {
   Segment target = Segment::chest;
   Vec3 direction = Vec3(0, 0, 0);  // unit: the way the blow travels
   double ball_mass_kg = 5.0;
-  double ball_speed_m_s = 6.0;     // at contact
+  double ball_speed_m_s = 6.0;  // at contact
   double ball_radius_m = 0.12;
-  double push_force_n = 300.0;     // push: force on the target
+  double push_force_n = 300.0;  // push: force on the target
   double push_duration_s = 0.2;
-  double impulse_n_s = 30.0;       // impulse: momentum given to the target at once
+  double impulse_n_s = 30.0;  // impulse: momentum given to the target at once
 };
 
 /// Segments at time 0 and their velocities (zero unless the body starts from motion).
@@ -48,7 +49,10 @@ struct StartState {
   BodyPose segments;
   PerSegment<Vec3> linear_velocity{};   // of the segment's origin, m/s
   PerSegment<Vec3> angular_velocity{};  // rad/s, world
-  StartState() { linear_velocity.fill(Vec3::Zero()); angular_velocity.fill(Vec3::Zero()); }
+  StartState() {
+    linear_velocity.fill(Vec3::Zero());
+    angular_velocity.fill(Vec3::Zero());
+  }
 };
 
 /// Excess over the range, all joints, every accepted step, before projection unless said otherwise.
@@ -66,16 +70,16 @@ struct SimulationFigures {
   long steps = 0;
   long rejected_steps = 0;
   double joint_separation_max_m = 0.0;
-  double energy_gain_max_j = 0.0;        // largest rise above the running minimum
+  double energy_gain_max_j = 0.0;  // largest rise above the running minimum
   double floor_penetration_max_m = 0.0;
   double self_penetration_max_m = 0.0;
   std::optional<double> rest_time_s;
-  double jitter_rad_s = 0.0;             // RMS angular velocity over the last 0.5 s (0 once stopped at rest)
-  double momentum_n_s = 0.0;             // of the blow
+  double jitter_rad_s = 0.0;  // RMS angular velocity over the last 0.5 s (0 once stopped at rest)
+  double momentum_n_s = 0.0;  // of the blow
   std::optional<double> first_ground_contact_s;  // of anything but the feet
   double angular_momentum_mean_kg_m2_s = 0.0;    // about the centre of mass, mean over 1 s after the blow
   double airborne_mean_s = 0.0;                  // time without ground contact after the blow
-  std::string hash;                      // of every state of the run
+  std::string hash;                              // of every state of the run
 };
 
 struct SimulationResult {
@@ -84,9 +88,10 @@ struct SimulationResult {
   SimulationFigures figures;
 };
 
-/// Runs the scene on the body. The body holds still until the blow arrives at time 0: the ball starts touching.
-/// Errors: simulation (diverged: segment, time, speed), usage (settings out of range).
-Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMotion& range, const StartState& start,
-                                  const Scene& scene, const SimulationSettings& settings, Diagnostics& diagnostics);
+/// Runs the scene on the body. The body holds still until the blow arrives at time 0: the ball starts
+/// touching. Errors: simulation (diverged: segment, time, speed), usage (settings out of range).
+Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMotion& range,
+                                  const StartState& start, const Scene& scene,
+                                  const SimulationSettings& settings, Diagnostics& diagnostics);
 
 }  // namespace ukemi

@@ -25,7 +25,8 @@ TEST_F(Files, WritesWholeAndReadsBack) {
   const auto bytes = read_file(folder / "a", 100);
   ASSERT_TRUE(bytes);
   EXPECT_EQ(std::string(bytes->begin(), bytes->end()), "hello");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1) << "temporary file left";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1)
+      << "temporary file left";
 }
 
 TEST_F(Files, RefusesWhatIsNoFile) {

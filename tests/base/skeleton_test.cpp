@@ -11,7 +11,8 @@ namespace {
 Skeleton chain(std::vector<int> parents) {
   Skeleton skeleton;
   for (const int parent : parents)
-    skeleton.nodes.push_back({"n" + std::to_string(skeleton.nodes.size()), parent, {{0, 1, 0}, Quat::Identity(), Vec3::Ones()}});
+    skeleton.nodes.push_back(
+        {"n" + std::to_string(skeleton.nodes.size()), parent, {{0, 1, 0}, Quat::Identity(), Vec3::Ones()}});
   return skeleton;
 }
 

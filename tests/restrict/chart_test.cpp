@@ -66,7 +66,8 @@ TEST(Polygon, DistanceIsSignedAndExactForConcaveShapes) {
   EXPECT_NEAR(polygon_distance(shape, Vec2(0, 0)), -1.0, 1e-15);
   EXPECT_NEAR(polygon_distance(shape, Vec2(2, 2)), 1.0, 1e-15);
   EXPECT_NEAR(polygon_distance(shape, Vec2(4, 2)), std::sqrt(2.0), 1e-15);
-  EXPECT_NEAR(polygon_distance(shape, Vec2(0.5, 0.5)), -std::sqrt(0.5), 1e-15) << "the reflex corner is nearest";
+  EXPECT_NEAR(polygon_distance(shape, Vec2(0.5, 0.5)), -std::sqrt(0.5), 1e-15)
+      << "the reflex corner is nearest";
   EXPECT_LT((nearest_boundary_point(shape, Vec2(2, 1.5)) - Vec2(2, 1)).norm(), 1e-15);
 }
 

@@ -64,7 +64,8 @@ TEST(Region, AMirroredPoseHasTheMirroredChart) {
 
 TEST(Region, OverridesSingleJointsOfABase) {
   const auto range = parse_range_of_motion(
-      "base = \"human\"\n[[joint]]\nname = \"elbow_l\"\npolygon = [[5, -10], [5, 10], [-5, 10], [-5, -10]]\n", "robot.toml");
+      "base = \"human\"\n[[joint]]\nname = \"elbow_l\"\npolygon = [[5, -10], [5, 10], [-5, 10], [-5, -10]]\n",
+      "robot.toml");
   ASSERT_TRUE(range) << range.error().message();
   const auto human = load_range_of_motion("human");
   EXPECT_EQ(range->joints[index(Joint::elbow_l)].polygon.size(), 4u);
@@ -92,20 +93,23 @@ TEST_P(RegionFault, IsNamedWithItsLine) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, RegionFault,
-    testing::Values(
-        Fault{"[[joint]]\nname = \"elbo_r\"\n", "unknown joint", 2},
-        Fault{"[[joint]]\nname = \"elbow_r\"\nalpha = [10, -10]\n", "inverted", 4},
-        Fault{"[[joint]]\nname = \"elbow_r\"\nalpha = [10, 20]\n", "must hold 0", 4},
-        Fault{"[[joint]]\nname = \"elbow_r\"\npolygon = [[1, 1], [9, 1], [9, 9], [1, 9]]\n", "star-shaped", 4},
-        Fault{"[[joint]]\nname = \"elbow_r\"\npolygon = [[9, 0], [0, -9], [-9, 0], [0, 9]]\n", "counter-clockwise", 4},
-        Fault{"[[joint]]\nname = \"elbow_r\"\npolygon = [[9, 0], [0, \"x\"], [-9, 0]]\n", "pair of numbers", 4},
-        Fault{"[[joint]]\nname = \"elbow_r\"\npolygon = [[9, 0], [0, 175], [-9, -9]]\n", "170 degrees", 4},
-        Fault{"[[joint]]\nname = \"elbow_r\"\nx_axis = [1, 1, 0]\n", "unit vectors", 2},
-        Fault{"[[joint]\n", "", 2}, Fault{"", "no [[joint]]", 1}));
+    testing::Values(Fault{"[[joint]]\nname = \"elbo_r\"\n", "unknown joint", 2},
+                    Fault{"[[joint]]\nname = \"elbow_r\"\nalpha = [10, -10]\n", "inverted", 4},
+                    Fault{"[[joint]]\nname = \"elbow_r\"\nalpha = [10, 20]\n", "must hold 0", 4},
+                    Fault{"[[joint]]\nname = \"elbow_r\"\npolygon = [[1, 1], [9, 1], [9, 9], [1, 9]]\n",
+                          "star-shaped", 4},
+                    Fault{"[[joint]]\nname = \"elbow_r\"\npolygon = [[9, 0], [0, -9], [-9, 0], [0, 9]]\n",
+                          "counter-clockwise", 4},
+                    Fault{"[[joint]]\nname = \"elbow_r\"\npolygon = [[9, 0], [0, \"x\"], [-9, 0]]\n",
+                          "pair of numbers", 4},
+                    Fault{"[[joint]]\nname = \"elbow_r\"\npolygon = [[9, 0], [0, 175], [-9, -9]]\n",
+                          "170 degrees", 4},
+                    Fault{"[[joint]]\nname = \"elbow_r\"\nx_axis = [1, 1, 0]\n", "unit vectors", 2},
+                    Fault{"[[joint]\n", "", 2}, Fault{"", "no [[joint]]", 1}));
 
 TEST(Region, SaysWhichJointIsMissing) {
-  const auto range =
-      parse_range_of_motion(std::string(kElbow) + "polygon = [[5, -10], [5, 10], [-5, 0]]\nalpha = [-9, 9]\n", "one.toml");
+  const auto range = parse_range_of_motion(
+      std::string(kElbow) + "polygon = [[5, -10], [5, 10], [-5, 0]]\nalpha = [-9, 9]\n", "one.toml");
   ASSERT_FALSE(range);
   EXPECT_EQ(range.error().joint, "spine");
 }

@@ -1,0 +1,124 @@
+#include "body/body.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "body/anthropometry.h"
+#include "body/shapes.h"
+
+namespace ukemi {
+namespace {
+
+Vec3 node_in_segment(const Humanoid& humanoid, const std::vector<Affine>& world, const Rigid& segment,
+                     int node) {
+  return segment.inverse() * (humanoid.world_from_file * Vec3(world[node].translation()));
+}
+
+/// Where each segment ends: the next joint, or crown, finger, toe; from the table where there is neither.
+PerSegment<Vec3> segment_ends(const Character& character, const Humanoid& humanoid, const Pose& pose,
+                              const BodyPose& segments) {
+  const double h = humanoid.height_m;
+  const std::vector<Affine> world = world_transforms(character.skeleton, pose);
+  PerSegment<Vec3> ends;
+  const auto to_next = [&](Segment from, Segment next) {
+    ends[index(from)] = segments[index(from)].inverse() * segments[index(next)].translation;
+  };
+  to_next(Segment::pelvis, Segment::abdomen);
+  to_next(Segment::abdomen, Segment::chest);
+  to_next(Segment::chest, Segment::head);
+  ends[index(Segment::head)] = Vec3(0.0, segment_table(Segment::head, Sex::male).length * h, 0.0);
+  if (humanoid.head_top >= 0)
+    ends[index(Segment::head)] =
+        node_in_segment(humanoid, world, segments[index(Segment::head)], humanoid.head_top);
+  const auto side = [&](int which, Segment clavicle, Segment thigh) {
+    for (int s = index(clavicle); s < index(clavicle) + 3; ++s) to_next(segment_at(s), segment_at(s + 1));
+    for (int s = index(thigh); s < index(thigh) + 2; ++s) to_next(segment_at(s), segment_at(s + 1));
+    const int hand = index(clavicle) + 3;
+    const int foot = index(thigh) + 2;
+    ends[hand] = humanoid.middle_finger[which] >= 0
+                     ? node_in_segment(humanoid, world, segments[hand], humanoid.middle_finger[which])
+                     : Vec3(0.0, -0.055 * h, 0.0);
+    ends[foot] = humanoid.toes[which] >= 0
+                     ? node_in_segment(humanoid, world, segments[foot], humanoid.toes[which])
+                     : Vec3(0.08 * h, -0.03 * h, 0.0);
+  };
+  side(0, Segment::clavicle_l, Segment::thigh_l);
+  side(1, Segment::clavicle_r, Segment::thigh_r);
+  return ends;
+}
+
+bool has_joint_length(Segment s) {
+  return (s >= Segment::clavicle_l && s != Segment::hand_l && s != Segment::hand_r && s != Segment::foot_l &&
+          s != Segment::foot_r);
+}
+
+BodySegment weigh(Segment segment, const Vec3& end, double height_m, double mass_kg, Sex sex) {
+  const SegmentTable table = segment_table(segment, sex);
+  BodySegment result;
+  result.mass_kg = table.mass_fraction * mass_kg;
+  const double table_length = table.length * height_m;
+  // A joint distance that is far from human (a long-armed cartoon) counts; one near zero would give no
+  // inertia.
+  const double length = has_joint_length(segment) ? std::max(end.norm(), 0.3 * table_length) : table_length;
+  switch (segment) {
+    case Segment::pelvis:
+      result.centre_of_mass = Vec3(0.0, table.centre * table_length, 0.0);
+      break;
+    case Segment::head:
+      result.centre_of_mass =
+          Vec3(0.01 * height_m, table.centre * std::max(end.norm(), 0.5 * table_length), 0.0);
+      break;
+    case Segment::hand_l:
+    case Segment::hand_r:
+      result.centre_of_mass = end.normalized() * (table.centre * table_length);
+      break;
+    case Segment::foot_l:
+    case Segment::foot_r:
+      result.centre_of_mass = Vec3((table.centre - 0.24) * table_length, -0.02 * height_m, 0.0);
+      break;
+    default:
+      result.centre_of_mass = table.centre * end;
+  }
+  const Vec3 radii = length * table.gyration;
+  result.inertia = result.mass_kg * radii.cwiseProduct(radii).asDiagonal().toDenseMatrix();
+  return result;
+}
+
+}  // namespace
+
+Result<ArticulatedBody> build_body(const Character& character, const Humanoid& humanoid, const Pose& pose,
+                                   const BodyPose& segments, const BodyOptions& options, Diagnostics&) {
+  if (!(humanoid.height_m > 0.0) || !std::isfinite(humanoid.height_m))
+    return Error{ErrorKind::input, character.path.string(), 0, 0, "", "the character has no height",
+                 "give --height"};
+  ArticulatedBody body;
+  body.height_m = humanoid.height_m;
+  body.mass_kg = options.mass_kg > 0.0 ? options.mass_kg : default_mass_kg(humanoid.height_m, options.sex);
+  const PerSegment<Vec3> ends = segment_ends(character, humanoid, pose, segments);
+  const auto skin = skin_of_segments(character, humanoid, pose, segments);
+  for (int s = 0; s < kSegmentCount; ++s) {
+    const Segment segment = segment_at(s);
+    if (!segments[s].translation.allFinite() || !ends[s].allFinite())
+      return Error{ErrorKind::input,
+                   character.path.string(),
+                   0,
+                   0,
+                   std::string(name(segment)),
+                   "the segment's place is not finite",
+                   "check the file's node transforms"};
+    body.segments[s] = weigh(segment, ends[s], body.height_m, body.mass_kg, options.sex);
+    if (!humanoid.segments[s].fused())
+      body.segments[s].shapes = {fit_shape(segment, ends[s], body.height_m, skin[s])};
+  }
+  for (int j = 0; j < kJointCount; ++j) {
+    const Rigid parent_from_world = segments[index(parent_of(joint_at(j)))].inverse();
+    const Rigid& child = segments[index(child_of(joint_at(j)))];
+    body.joints[j].anchor_in_parent = parent_from_world * child.translation;
+    body.joints[j].fused = humanoid.segments[index(child_of(joint_at(j)))].fused();
+    body.joints[j].parent_from_child = parent_from_world * child;
+  }
+  return body;
+}
+
+}  // namespace ukemi

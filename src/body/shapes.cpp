@@ -1,0 +1,214 @@
+#include "body/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ukemi {
+namespace {
+
+constexpr std::size_t kFewestVertices = 12;
+
+struct Proportions {
+  double radius;  // over stature
+  double width;   // trunk: full width over stature; foot: full width
+};
+
+// Radii: capsules of de Leva's masses at 1050 kg/m^3 (limbs, head); trunk and foot widths: DeepMimic's
+// humanoid and common adult measures.
+Proportions proportions(Segment segment) {
+  switch (segment) {
+    case Segment::pelvis:
+      return {0.062, 0.190};
+    case Segment::abdomen:
+      return {0.058, 0.165};
+    case Segment::chest:
+      return {0.064, 0.185};
+    case Segment::head:
+      return {0.053, 0.0};
+    case Segment::clavicle_l:
+    case Segment::clavicle_r:
+      return {0.025, 0.0};
+    case Segment::upperarm_l:
+    case Segment::upperarm_r:
+      return {0.028, 0.0};
+    case Segment::forearm_l:
+    case Segment::forearm_r:
+      return {0.022, 0.0};
+    case Segment::hand_l:
+    case Segment::hand_r:
+      return {0.016, 0.0};
+    case Segment::thigh_l:
+    case Segment::thigh_r:
+      return {0.044, 0.0};
+    case Segment::shank_l:
+    case Segment::shank_r:
+      return {0.028, 0.0};
+    case Segment::foot_l:
+    case Segment::foot_r:
+      break;
+  }
+  return {0.020, 0.055};
+}
+
+bool is_trunk(Segment s) { return s == Segment::pelvis || s == Segment::abdomen || s == Segment::chest; }
+bool is_foot(Segment s) { return s == Segment::foot_l || s == Segment::foot_r; }
+bool is_hand(Segment s) { return s == Segment::hand_l || s == Segment::hand_r; }
+
+double percentile(std::vector<double> values, double share) {
+  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + k, values.end());
+  return values[static_cast<std::size_t>(k)];
+}
+
+struct Extent {
+  double low, high;
+  double middle() const { return 0.5 * (low + high); }
+  double size() const { return high - low; }
+};
+
+Extent extent(const std::vector<Vec3>& points, int axis, double trim) {
+  std::vector<double> values;
+  values.reserve(points.size());
+  for (const Vec3& p : points) values.push_back(p[axis]);
+  return {percentile(values, trim), percentile(values, 1.0 - trim)};
+}
+
+Shape capsule_between(const Vec3& from, const Vec3& to, double radius) {
+  Shape shape;
+  shape.kind = ShapeKind::capsule;
+  shape.radius = radius;
+  shape.length = std::max((to - from).norm(), 0.05 * radius);
+  shape.segment_from_shape = {shortest_rotation(Vec3::UnitY(), to - from), 0.5 * (from + to)};
+  return shape;
+}
+
+/// Median distance of the skin from the axis, over the middle of the limb.
+double limb_radius(const Vec3& end, const std::vector<Vec3>& skin, double fallback) {
+  const double length2 = end.squaredNorm();
+  std::vector<double> distances;
+  for (const Vec3& p : skin) {
+    const double t = length2 > 0.0 ? p.dot(end) / length2 : 0.0;
+    if (t > 0.15 && t < 0.85) distances.push_back((p - t * end).norm());
+  }
+  return distances.size() < kFewestVertices ? fallback : percentile(std::move(distances), 0.5);
+}
+
+Shape limb(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
+  const double table = proportions(segment).radius * height_m;
+  const double radius = std::clamp(limb_radius(end, skin, table), 0.3 * table, 2.5 * table);
+  if (!is_hand(segment)) return capsule_between(Vec3::Zero(), end, radius);
+  double reach = end.norm() * 1.9;  // fingertip: the middle finger's base lies about half-way
+  if (skin.size() >= kFewestVertices) {
+    std::vector<double> along;
+    for (const Vec3& p : skin) along.push_back(p.dot(end.normalized()));
+    reach = percentile(std::move(along), 0.98);
+  }
+  return capsule_between(Vec3::Zero(), end.normalized() * std::max(reach - radius, 0.5 * end.norm()), radius);
+}
+
+Shape trunk(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
+  const Proportions table = proportions(segment);
+  double radius = table.radius * height_m;
+  double width = table.width * height_m;
+  Vec3 centre = segment == Segment::pelvis ? Vec3(0.0, 0.02 * height_m, 0.0) : Vec3(0.5 * end);
+  if (skin.size() >= kFewestVertices) {
+    const Extent depth = extent(skin, 0, 0.05);
+    const Extent across = extent(skin, 2, 0.05);
+    radius = std::clamp(0.5 * depth.size(), 0.4 * radius, 2.5 * radius);
+    width = std::max(across.size(), 2.05 * radius);
+    centre = Vec3(depth.middle(), extent(skin, 1, 0.05).middle(), across.middle());
+  }
+  const Vec3 half(0.0, 0.0, 0.5 * width - radius);
+  return capsule_between(centre - half, centre + half, radius);
+}
+
+Shape head(const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
+  const double table = proportions(Segment::head).radius * height_m;
+  if (skin.size() < kFewestVertices)
+    return capsule_between(0.45 * end, end * (1.0 - table / end.norm()), table);
+  const Extent depth = extent(skin, 0, 0.03);
+  const Extent up = extent(skin, 1, 0.01);
+  const Extent across = extent(skin, 2, 0.03);
+  const double radius = std::clamp(0.25 * (depth.size() + across.size()), 0.5 * table, 3.0 * table);
+  const double low = std::min(std::max(up.low, 0.0) + radius, up.high - radius - 0.01 * height_m);
+  return capsule_between({depth.middle(), low, across.middle()},
+                         {depth.middle(), up.high - radius, across.middle()}, radius);
+}
+
+Shape foot(const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
+  Extent along{-0.035 * height_m, 0.113 * height_m};
+  Extent up{-0.039 * height_m, 0.012 * height_m};
+  Extent across{-0.5 * 0.055 * height_m, 0.5 * 0.055 * height_m};
+  if (end.x() > 0.02 * height_m) along.high = end.x() + 0.035 * height_m;
+  if (skin.size() >= kFewestVertices) {
+    along = extent(skin, 0, 0.01);
+    up = {extent(skin, 1, 0.01).low, std::min(extent(skin, 1, 0.01).high, 0.012 * height_m)};
+    across = extent(skin, 2, 0.02);
+  }
+  Shape shape;
+  shape.kind = ShapeKind::box;
+  shape.size = Vec3(along.size(), up.size(), across.size()).cwiseMax(0.015 * height_m);
+  shape.segment_from_shape = {Quat::Identity(),
+                              {along.middle(), up.low + 0.5 * shape.size.y(), across.middle()}};
+  return shape;
+}
+
+/// Segment that moves each node: that of its chain, else of its parent; the pelvis for nodes above.
+std::vector<Segment> segment_of_nodes(const Skeleton& skeleton, const Humanoid& humanoid) {
+  std::vector<Segment> owner(skeleton.nodes.size(), Segment::pelvis);
+  std::vector<int> mapped(skeleton.nodes.size(), -1);
+  for (int s = 0; s < kSegmentCount; ++s)
+    for (const int node : humanoid.segments[s].chain) mapped[node] = s;
+  for (const int node : skeleton.order) {
+    const int parent = skeleton.nodes[node].parent;
+    if (mapped[node] >= 0)
+      owner[node] = segment_at(mapped[node]);
+    else if (parent >= 0)
+      owner[node] = owner[parent];
+  }
+  return owner;
+}
+
+}  // namespace
+
+PerSegment<std::vector<Vec3>> skin_of_segments(const Character& character, const Humanoid& humanoid,
+                                               const Pose& pose, const BodyPose& segments) {
+  PerSegment<std::vector<Vec3>> result;
+  const std::vector<Segment> owner = segment_of_nodes(character.skeleton, humanoid);
+  const std::vector<Affine> world = world_transforms(character.skeleton, pose);
+  PerSegment<Rigid> segment_from_world;
+  for (int s = 0; s < kSegmentCount; ++s) segment_from_world[s] = segments[s].inverse();
+  const auto add = [&](Segment s, const Vec3& file_position) {
+    result[index(s)].push_back(segment_from_world[index(s)] * (humanoid.world_from_file * file_position));
+  };
+  for (const MeshPart& part : character.parts) {
+    if (part.skin < 0) {
+      for (const auto& p : part.positions) add(owner[part.node], world[part.node] * p.cast<double>());
+      continue;
+    }
+    const Skin& skin = character.skins[part.skin];
+    std::vector<Affine> world_from_mesh;
+    for (std::size_t j = 0; j < skin.joints.size(); ++j)
+      world_from_mesh.push_back(world[skin.joints[j]] * skin.inverse_bind[j]);
+    for (std::size_t v = 0; v < part.positions.size(); ++v) {
+      Vec3 p = Vec3::Zero();
+      int heaviest = 0;
+      for (int k = 0; k < 4; ++k) {
+        p += static_cast<double>(part.weights[v][k]) *
+             (world_from_mesh[part.joints[v][k]] * part.positions[v].cast<double>());
+        if (part.weights[v][k] > part.weights[v][heaviest]) heaviest = k;
+      }
+      add(owner[skin.joints[part.joints[v][heaviest]]], p);
+    }
+  }
+  return result;
+}
+
+Shape fit_shape(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
+  if (is_trunk(segment)) return trunk(segment, end, height_m, skin);
+  if (segment == Segment::head) return head(end, height_m, skin);
+  if (is_foot(segment)) return foot(end, height_m, skin);
+  return limb(segment, end, height_m, skin);
+}
+
+}  // namespace ukemi

@@ -1,0 +1,206 @@
+#include "simulate/collision.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace ukemi {
+namespace {
+
+constexpr int kMaxContacts = 4;
+constexpr int kMaxBoxContacts = 3;        // a fourth adds nothing but rows
+constexpr int kFullFrictionContacts = 2;  // of a pair
+constexpr double kSoftErp = 0.2;
+constexpr double kSoftCfm = 1e-5;
+
+/// Joints between two segments along the tree.
+int tree_distance(Segment a, Segment b) {
+  int steps = 0;
+  while (a != b) {
+    if (index(a) < index(b)) std::swap(a, b);
+    a = parent_of(a);
+    ++steps;
+  }
+  return steps;
+}
+
+bool pair_of(Segment a, Segment b, Segment x, Segment y) { return (a == x && b == y) || (a == y && b == x); }
+
+bool may_collide(Segment a, Segment b) {
+  const int distance = tree_distance(a, b);
+  if (distance > 2) return true;
+  return pair_of(a, b, Segment::thigh_l, Segment::thigh_r) ||
+         pair_of(a, b, Segment::chest, Segment::upperarm_l) ||
+         pair_of(a, b, Segment::chest, Segment::upperarm_r);
+}
+
+bool boxes_overlap(dGeomID a, dGeomID b) {
+  dReal p[6];
+  dReal q[6];
+  dGeomGetAABB(a, p);
+  dGeomGetAABB(b, q);
+  return p[0] <= q[1] && q[0] <= p[1] && p[2] <= q[3] && q[2] <= p[3] && p[4] <= q[5] && q[4] <= p[5];
+}
+
+bool is_foot(Segment s) { return s == Segment::foot_l || s == Segment::foot_r; }
+
+Vec3 velocity_at(dBodyID body, const dReal* point) {
+  if (body == nullptr) return Vec3::Zero();
+  dVector3 v;
+  dBodyGetPointVel(body, point[0], point[1], point[2], v);
+  return vec3(v);
+}
+
+}  // namespace
+
+Collision::Collision(OdeWorld& world, const Model& model, const ArticulatedBody& body, bool self_collision)
+    : world_(world) {
+  colliders_.push_back({dCreatePlane(nullptr, 0, 1, 0, 0), -1, Segment::pelvis, false});
+  for (int s = 0; s < kSegmentCount; ++s)
+    for (const Shape& shape : body.segments[s].shapes) add_shape(model, segment_at(s), shape);
+  for (std::size_t i = 1; i < colliders_.size(); ++i) pairs_.push_back({0, i, PairKind::floor, 0.0});
+  if (self_collision) make_self_pairs();
+}
+
+Collision::~Collision() {
+  if (world_.poisoned()) return;
+  for (const Collider& collider : colliders_) dGeomDestroy(collider.geom);
+}
+
+void Collision::add_shape(const Model& model, Segment segment, const Shape& shape) {
+  Rigid body_from_geom = model.segment_in_body(segment) * shape.segment_from_shape;
+  Collider collider{nullptr, model.body_of(segment), segment, shape.kind == ShapeKind::box};
+  if (shape.kind == ShapeKind::box) {
+    collider.geom = dCreateBox(nullptr, shape.size.x(), shape.size.y(), shape.size.z());
+  } else {
+    collider.geom = dCreateCapsule(nullptr, shape.radius, shape.length);  // along its z, ours along y
+    body_from_geom.rotation = body_from_geom.rotation * exp_rotation(Vec3(-0.5 * kPi, 0.0, 0.0));
+  }
+  dGeomSetBody(collider.geom, model.bodies()[collider.body].id);
+  const Vec3& p = body_from_geom.translation;
+  const Quat& q = body_from_geom.rotation;
+  const dQuaternion rotation = {q.w(), q.x(), q.y(), q.z()};
+  dGeomSetOffsetPosition(collider.geom, p.x(), p.y(), p.z());
+  dGeomSetOffsetQuaternion(collider.geom, rotation);
+  colliders_.push_back(collider);
+}
+
+void Collision::make_self_pairs() {
+  for (std::size_t a = 1; a < colliders_.size(); ++a)
+    for (std::size_t b = a + 1; b < colliders_.size(); ++b)
+      if (colliders_[a].body != colliders_[b].body &&
+          may_collide(colliders_[a].segment, colliders_[b].segment))
+        pairs_.push_back({a, b, PairKind::self, 0.0});
+}
+
+void Collision::add_ball(dBodyID ball, double radius) {
+  const dGeomID geom = dCreateSphere(nullptr, radius);
+  dGeomSetBody(geom, ball);
+  const std::size_t i = colliders_.size();
+  colliders_.push_back({geom, -1, Segment::pelvis, false});
+  for (std::size_t other = 0; other < i; ++other) pairs_.push_back({other, i, PairKind::prop, 0.0});
+}
+
+void Collision::accept_overlaps() {
+  const Contacts now = find();
+  for (std::size_t p = 0; p < pairs_.size(); ++p) pairs_[p].accepted += now.depth[p];
+}
+
+Contacts Collision::find() const {
+  Contacts found;
+  found.depth.assign(pairs_.size(), 0.0);
+  std::array<dContactGeom, kMaxContacts> buffer;
+  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    const Pair& pair = pairs_[p];
+    const Collider& a = colliders_[pair.a];
+    const Collider& b = colliders_[pair.b];
+    if (pair.a != 0 && !boxes_overlap(a.geom, b.geom)) continue;
+    const int most = a.box || b.box ? kMaxBoxContacts : kMaxContacts;
+    const int count = dCollide(a.geom, b.geom, most, buffer.data(), sizeof(dContactGeom));
+    for (int i = 0; i < count; ++i) {
+      buffer[i].depth -= pair.accepted;
+      if (buffer[i].depth <= 0.0) continue;
+      found.points.push_back({p, buffer[i]});
+      found.depth[p] = std::max(found.depth[p], static_cast<double>(buffer[i].depth));
+    }
+    if (pair.kind == PairKind::self)
+      found.self_penetration = std::max(found.self_penetration, found.depth[p]);
+    if (pair.kind != PairKind::floor || found.depth[p] <= 0.0) continue;
+    found.floor_penetration = std::max(found.floor_penetration, found.depth[p]);
+    found.ground = true;
+    found.ground_beyond_feet = found.ground_beyond_feet || !is_foot(b.segment);
+  }
+  return found;
+}
+
+void Collision::touch(const Contacts& contacts, const ContactSettings& settings) const {
+  std::size_t last_pair = pairs_.size();
+  int nth = 0;
+  for (const Contacts::Point& point : contacts.points) {
+    nth = point.pair == last_pair ? nth + 1 : 0;
+    last_pair = point.pair;
+    dContact contact{};
+    contact.geom = point.geometry;
+    dSurfaceParameters& surface = contact.surface;
+    surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+    surface.soft_erp = kSoftErp;
+    surface.soft_cfm = kSoftCfm;
+    surface.mu = settings.friction;
+    const dBodyID a = dGeomGetBody(point.geometry.g1);
+    const dBodyID b = dGeomGetBody(point.geometry.g2);
+    if (settings.sparse_friction) {
+      if (pairs_[point.pair].kind == PairKind::floor) {
+        // Two rows at the first two contacts of a pair hold it; the others only carry.
+        if (nth >= kFullFrictionContacts) surface.mu = 0.0;
+      } else {
+        // One row along the slip.
+        const Vec3 normal = vec3(point.geometry.normal);
+        Vec3 slip = velocity_at(a, point.geometry.pos) - velocity_at(b, point.geometry.pos);
+        slip -= normal.dot(slip) * normal;
+        if (slip.norm() < 1e-6) slip = normal.unitOrthogonal();
+        slip.normalize();
+        surface.mode |= dContactAxisDep | dContactFDir1;
+        surface.mu2 = 0.0;
+        contact.fdir1[0] = slip.x();
+        contact.fdir1[1] = slip.y();
+        contact.fdir1[2] = slip.z();
+      }
+    }
+    dJointAttach(dJointCreateContact(world_.id(), world_.contacts(), &contact), a, b);
+  }
+}
+
+std::optional<Collision::FirstTouch> Collision::first_touch(const Vec3& start, const Vec3& direction,
+                                                            double radius, double reach) const {
+  constexpr double kStride = 0.002;
+  const dGeomID probe = dCreateSphere(nullptr, radius);
+  std::optional<FirstTouch> found;
+  const auto touched = [&](double distance) {
+    const Vec3 at = start + distance * direction;
+    dGeomSetPosition(probe, at.x(), at.y(), at.z());
+    dContactGeom contact;
+    for (std::size_t i = 1; i < colliders_.size(); ++i) {
+      if (colliders_[i].body < 0 || !boxes_overlap(probe, colliders_[i].geom)) continue;
+      if (dCollide(probe, colliders_[i].geom, 1, &contact, sizeof contact) > 0) {
+        found = FirstTouch{distance, colliders_[i].segment};
+        return true;
+      }
+    }
+    return false;
+  };
+  double distance = 0.0;
+  while (distance <= reach && !touched(distance)) distance += kStride;
+  if (found) {
+    double outside = std::max(0.0, distance - kStride);
+    double inside = distance;
+    for (int i = 0; i < 30; ++i) {
+      const double middle = 0.5 * (outside + inside);
+      (touched(middle) ? inside : outside) = middle;
+    }
+    found->distance = inside;
+  }
+  dGeomDestroy(probe);
+  return found;
+}
+
+}  // namespace ukemi

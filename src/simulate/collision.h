@@ -1,0 +1,77 @@
+// Shapes of the body, the props and the floor in ODE's collision space, found and made into contacts in a
+// fixed order.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "simulate/model.h"
+#include "simulate/simulate.h"
+
+namespace ukemi {
+
+/// What touches what.
+enum class PairKind { floor, prop, self };
+
+struct ContactSettings {
+  bool sparse_friction = true;  // friction rows only where they matter, see touch()
+  double friction = 0.8;
+};
+
+/// Contacts of one moment: plain data, so that a rejected step can use them again.
+struct Contacts {
+  struct Point {
+    std::size_t pair = 0;
+    dContactGeom geometry{};
+  };
+  std::vector<Point> points;
+  std::vector<double> depth;  // deepest point of each pair, m; 0 where apart
+  double floor_penetration = 0.0, self_penetration = 0.0;
+  bool ground = false;  // the body touches the floor
+  bool ground_beyond_feet = false;
+};
+
+class Collision {
+ public:
+  Collision(OdeWorld& world, const Model& model, const ArticulatedBody& body, bool self_collision);
+  ~Collision();
+  Collision(const Collision&) = delete;
+  Collision& operator=(const Collision&) = delete;
+
+  /// A ball that meets the body and the floor.
+  void add_ball(dBodyID ball, double radius);
+  /// Overlaps of the present pose that are no contact: shapes that fit a character may overlap at the start.
+  void accept_overlaps();
+  Contacts find() const;
+  /// Creates the contact joints of a step.
+  void touch(const Contacts& contacts, const ContactSettings& settings) const;
+  /// Where a sphere that comes along `direction` first touches the body, and which segment; nothing if it
+  /// passes by.
+  struct FirstTouch {
+    double distance;  // from `start` to the sphere's centre
+    Segment segment;
+  };
+  std::optional<FirstTouch> first_touch(const Vec3& start, const Vec3& direction, double radius,
+                                        double reach) const;
+
+ private:
+  struct Collider {
+    dGeomID geom = nullptr;
+    int body = -1;  // of the model; -1 floor or prop
+    Segment segment = Segment::pelvis;
+    bool box = false;
+  };
+  struct Pair {
+    std::size_t a = 0, b = 0;
+    PairKind kind = PairKind::self;
+    double accepted = 0.0;  // overlap at the start, m
+  };
+  void add_shape(const Model& model, Segment segment, const Shape& shape);
+  void make_self_pairs();
+
+  OdeWorld& world_;
+  std::vector<Collider> colliders_;  // 0: floor
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace ukemi

@@ -1,0 +1,52 @@
+// What is measured at every accepted step, and what the report says of it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "simulate/collision.h"
+#include "simulate/model.h"
+#include "simulate/simulate.h"
+
+namespace ukemi {
+
+/// Kinetic and potential energy, momenta of rigid bodies.
+double kinetic_energy(double mass_kg, const Mat3& body_inertia, const RigidState& state);
+Vec3 angular_momentum_about_centre(const std::vector<ModelBody>& bodies);
+
+class Recorder {
+ public:
+  Recorder(const Model& model, double gravity);
+
+  void excess_of_step(const std::vector<double>& excess_by_joint, double projected_max);
+  /// After an accepted step of length h that ended at `time_s`. `extra_energy`: of the props, J; `work`: done
+  /// on the body by the scene in this step, J.
+  void step(double time_s, double h, const Contacts& contacts, double extra_energy, double work,
+            double separation);
+  void rejected() { ++figures_.rejected_steps; }
+  void rest(double time_s) { figures_.rest_time_s = time_s; }
+  void momentum(double momentum_n_s) { figures_.momentum_n_s = momentum_n_s; }
+
+  LimitFigures limits(bool projected) const;
+  SimulationFigures figures() const;
+
+ private:
+  struct Turning {
+    double time_s, h, mean_square;
+  };
+  void hash_state();
+
+  const Model& model_;
+  double gravity_;
+  SimulationFigures figures_;
+  std::vector<double> outside_;  // excess of samples above 0, rad
+  long samples_ = 0, over_1deg_ = 0;
+  double excess_max_ = 0.0, projected_max_ = 0.0;
+  std::optional<Joint> worst_;
+  double lowest_energy_, work_ = 0.0;
+  double momentum_time_ = 0.0, momentum_integral_ = 0.0, airborne_ = 0.0;
+  std::vector<Turning> turning_;
+  std::uint64_t hash_ = 14695981039346656037ull;  // FNV-1a
+};
+
+}  // namespace ukemi

@@ -1,0 +1,52 @@
+#include "simulate/ode_world.h"
+
+#include <cstdarg>
+#include <cstdio>
+#include <mutex>
+
+namespace ukemi {
+namespace {
+
+[[noreturn]] void fail(int, const char* format, va_list arguments) {
+  char text[256];
+  std::vsnprintf(text, sizeof text, format, arguments);
+  throw OdeFailure(text);
+}
+
+void ignore_message(int, const char*, va_list) {}
+
+}  // namespace
+
+void initialise_ode() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    dInitODE2(0);
+    dSetErrorHandler(fail);
+    dSetDebugHandler(fail);
+    dSetMessageHandler(ignore_message);
+  });
+  dAllocateODEDataForThread(dAllocateMaskAll);
+}
+
+OdeWorld::OdeWorld() {
+  initialise_ode();
+  world_ = dWorldCreate();
+  contacts_ = dJointGroupCreate(0);
+  // Worlds that share the default implementation crash when stepped in two threads.
+  threading_ = dThreadingAllocateSelfThreadedImplementation();
+  dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
+}
+
+OdeWorld::~OdeWorld() {
+  if (poisoned_) return;
+  dJointGroupDestroy(contacts_);
+  dWorldDestroy(world_);
+  dThreadingFreeImplementation(threading_);
+}
+
+void set_quaternion(dBodyID body, const Quat& q) {
+  const dQuaternion value = {q.w(), q.x(), q.y(), q.z()};
+  dBodySetQuaternion(body, value);
+}
+
+}  // namespace ukemi

@@ -1,0 +1,45 @@
+// An ODE world of one's own: created, stepped, torn down. ODE's fatal errors become exceptions; a world that
+// threw is never touched again (destroying it would abort), so its memory is given up.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <stdexcept>
+
+#include "base/math.h"
+
+namespace ukemi {
+
+/// Thrown out of ODE's error and debug handlers.
+struct OdeFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Initialises ODE for this process and thread, once.
+void initialise_ode();
+
+class OdeWorld {
+ public:
+  OdeWorld();
+  ~OdeWorld();
+  OdeWorld(const OdeWorld&) = delete;
+  OdeWorld& operator=(const OdeWorld&) = delete;
+
+  dWorldID id() const { return world_; }
+  dJointGroupID contacts() const { return contacts_; }
+  /// After an OdeFailure: nothing of the world is touched any more.
+  void poison() { poisoned_ = true; }
+  bool poisoned() const { return poisoned_; }
+
+ private:
+  dWorldID world_;
+  dJointGroupID contacts_;
+  dThreadingImplementationID threading_;
+  bool poisoned_ = false;
+};
+
+inline Vec3 vec3(const dReal* v) { return {v[0], v[1], v[2]}; }
+inline Quat quat(const dReal* q) { return {q[0], q[1], q[2], q[3]}; }
+void set_quaternion(dBodyID body, const Quat& q);
+
+}  // namespace ukemi

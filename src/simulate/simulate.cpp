@@ -1,0 +1,468 @@
+#include "simulate/simulate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "simulate/collision.h"
+#include "simulate/figures.h"
+#include "simulate/limits.h"
+#include "simulate/model.h"
+
+namespace ukemi {
+namespace {
+
+/// How steps are taken. Adaptive: 240 Hz, 120 Hz when calm, halved down to 1/960 s when a step's result is
+/// bad. Fixed: the yardstick that gains are measured against.
+struct Stepping {
+  bool adaptive = true;
+  double tick_s = 1.0 / 960.0;
+  int base_ticks = 4;
+  int calm_ticks = 8;
+  Reach reach{0.02, 1.5};
+  double max_correcting_speed = 0.3;  // m/s, of contacts
+  double damping = 10.0;              // 1/s
+  bool sparse_friction = true;
+};
+
+constexpr int kCalmSteps = 8;
+constexpr double kCalmSpeed = 3.0;             // rad/s, of every joint
+constexpr double kWorstExcess = radians(0.5);  // above: the step is rejected
+constexpr double kWorstSeparation = 0.006;     // m
+constexpr double kWorstSinking = 0.008;        // m, growth of a pair's depth in one step
+constexpr double kWorstMiss =
+    radians(0.3);  // beyond an edge without a row: the step is taken again with all rows
+constexpr double kErp = 0.8;
+constexpr double kErpPerSecond = 192.0;  // ERP = min(0.8, 192 h): correction speed does not grow as h shrinks
+constexpr double kCfm = 1e-9;
+constexpr double kContactLayer = 0.001;   // m
+constexpr double kMaxExplicitGain = 0.1;  // of k h: explicit torques beyond it explode
+constexpr double kRunaway = 100.0;        // m/s
+constexpr double kRestSpeed = 0.02;       // m/s
+constexpr double kRestTurning = 0.1;      // rad/s
+constexpr double kRestSpan_s = 0.25;
+constexpr double kTouchDepth = 0.0002;  // m: the ball starts touching
+
+struct Diverged {
+  Segment segment;
+  double time_s, speed;
+};
+
+Stepping stepping_of(const SimulationSettings& settings) {
+  Stepping s;
+  if (settings.fixed_hz > 0.0) {
+    s.adaptive = false;
+    s.tick_s = 1.0 / settings.fixed_hz;
+    s.base_ticks = s.calm_ticks = 1;
+    s.reach = {std::max(0.25, 120.0 * s.tick_s), 0.0};
+    s.max_correcting_speed = 1.0;
+    s.damping = 0.0;
+    s.sparse_friction = false;
+  }
+  s.damping = settings.damping.value_or(s.damping);
+  return s;
+}
+
+/// Frames between two step ends: positions linearly, rotations along the arc.
+BodyPose between(const BodyPose& a, const BodyPose& b, double u) {
+  BodyPose pose;
+  for (int s = 0; s < kSegmentCount; ++s)
+    pose[s] = {a[s].rotation.slerp(u, b[s].rotation),
+               a[s].translation + u * (b[s].translation - a[s].translation)};
+  return pose;
+}
+
+class Simulation {
+ public:
+  Simulation(const ArticulatedBody& body, const RangeOfMotion& range, const ActiveThresholds& thresholds,
+             const StartState& start, const Scene& scene, const SimulationSettings& settings)
+      : settings_(settings),
+        stepping_(stepping_of(settings)),
+        scene_(scene),
+        model_(world_, body, range),
+        collision_(world_, model_, body, settings.self_collision),
+        recorder_(model_, settings.gravity) {
+    dWorldSetGravity(world_.id(), 0.0, -settings.gravity, 0.0);
+    dWorldSetCFM(world_.id(), kCfm);
+    dWorldSetContactSurfaceLayer(world_.id(), kContactLayer);
+    dWorldSetContactMaxCorrectingVel(world_.id(), stepping_.max_correcting_speed);
+    model_.place(start.segments, start.linear_velocity, start.angular_velocity);
+    collision_.accept_overlaps();
+    passive_.reserve(model_.joints().size());
+    active_.reserve(model_.joints().size());
+    for (const ModelJoint& joint : model_.joints()) {
+      passive_.emplace_back(world_, model_, joint, settings.limits);
+      active_.emplace_back(world_, model_, joint, settings.active, settings.active_k,
+                           thresholds[index(joint.joint)]);
+    }
+    set_erp(base_h());
+  }
+
+  SimulationResult run(Diagnostics& diagnostics);
+  void poison() { world_.poison(); }
+
+ private:
+  double base_h() const { return stepping_.tick_s * stepping_.base_ticks; }
+  bool projecting() const { return settings_.limits == Limits::edges; }
+
+  void start_scene(Diagnostics& diagnostics);
+  void start_ball(Diagnostics& diagnostics);
+  void start_impulse();
+  void set_erp(double h);
+  void add_forces(double h);
+  void advance(int ticks);
+  bool try_step(int ticks);
+  void take_step(double h);
+  void accept(int ticks, const std::vector<double>& excesses, double separation, Contacts next);
+  std::vector<double> joint_excesses() const;
+  double worst_separation() const;
+  double worst_joint_speed() const;
+  double push_work(double h) const;
+  double prop_energy() const;
+  void save();
+  void restore();
+  void check_speeds() const;
+  void watch_rest(int ticks);
+  void add_frames_until(double time_s);
+  double time_s() const { return stepping_.tick_s * static_cast<double>(ticks_); }
+
+  SimulationSettings settings_;
+  Stepping stepping_;
+  Scene scene_;
+  OdeWorld world_;
+  Model model_;
+  Collision collision_;
+  Recorder recorder_;
+  std::vector<PassiveLimit> passive_;
+  std::vector<ActiveLimit> active_;
+  std::vector<bool> all_rows_;
+  dBodyID ball_ = nullptr;
+  Mat3 ball_inertia_ = Mat3::Zero();
+  Contacts contacts_;
+  std::vector<RigidState> saved_;
+  long ticks_ = 0;
+  int calm_steps_ = 0;
+  double still_s_ = 0.0;
+  bool resting_ = false;
+  double erp_h_ = 0.0;
+  Trajectory trajectory_;
+  BodyPose before_, now_;
+  Rigid ball_before_, ball_now_;
+  double before_s_ = 0.0;
+};
+
+void Simulation::set_erp(double h) {
+  if (h == erp_h_) return;
+  erp_h_ = h;
+  const double erp = stepping_.adaptive ? std::min(kErp, kErpPerSecond * h) : kErp;
+  dWorldSetERP(world_.id(), erp);
+  // Ball joints copied the world's ERP when they were made.
+  for (const ModelJoint& joint : model_.joints()) {
+    dJointSetBallParam(joint.id, dParamERP, erp);
+    dJointSetBallParam(joint.id, dParamCFM, kCfm);
+  }
+}
+
+void Simulation::start_ball(Diagnostics& diagnostics) {
+  const RigidState target = read_state(model_.bodies()[model_.body_of(scene_.target)].id);
+  const double reach = 3.0;
+  const Vec3 start = target.position - reach * scene_.direction;
+  const auto touch = collision_.first_touch(start, scene_.direction, scene_.ball_radius_m, reach);
+  const double distance = touch ? touch->distance + kTouchDepth : reach;
+  if (touch && touch->segment != scene_.target)
+    diagnostics.warn(std::string(name(scene_.target)),
+                     fmt::format("the ball meets the {} first", name(touch->segment)));
+  const Vec3 at = start + distance * scene_.direction;
+  ball_ = dBodyCreate(world_.id());
+  dMass mass;
+  dMassSetSphereTotal(&mass, scene_.ball_mass_kg, scene_.ball_radius_m);
+  dBodySetMass(ball_, &mass);
+  ball_inertia_ = 0.4 * scene_.ball_mass_kg * scene_.ball_radius_m * scene_.ball_radius_m * Mat3::Identity();
+  write_state(ball_, {at, scene_.ball_speed_m_s * scene_.direction, Vec3::Zero(), Quat::Identity()});
+  collision_.add_ball(ball_, scene_.ball_radius_m);
+  recorder_.momentum(scene_.ball_mass_kg * scene_.ball_speed_m_s);
+  trajectory_.impact_point = at + scene_.ball_radius_m * scene_.direction;
+  Prop prop;
+  prop.kind = Prop::Kind::ball;
+  prop.radius = scene_.ball_radius_m;
+  trajectory_.props.push_back(prop);
+  ball_before_ = ball_now_ = {Quat::Identity(), at};
+}
+
+void Simulation::start_impulse() {
+  const dBodyID target = model_.bodies()[model_.body_of(scene_.target)].id;
+  RigidState state = read_state(target);
+  state.linear_velocity +=
+      scene_.impulse_n_s / model_.bodies()[model_.body_of(scene_.target)].mass_kg * scene_.direction;
+  write_state(target, state);
+  recorder_.momentum(scene_.impulse_n_s);
+}
+
+void Simulation::start_scene(Diagnostics& diagnostics) {
+  trajectory_.fps = settings_.fps;
+  trajectory_.impact_direction = scene_.direction;
+  trajectory_.impact_point = vec3(dBodyGetPosition(model_.bodies()[model_.body_of(scene_.target)].id));
+  if (scene_.kind == SceneKind::ball) start_ball(diagnostics);
+  if (scene_.kind == SceneKind::impulse) start_impulse();
+  if (scene_.kind == SceneKind::push) recorder_.momentum(scene_.push_force_n * scene_.push_duration_s);
+}
+
+void Simulation::add_forces(double h) {
+  const double max_gain = kMaxExplicitGain / h;
+  for (std::size_t j = 0; j < model_.joints().size(); ++j) {
+    passive_[j].prepare(h, stepping_.reach, all_rows_[j]);
+    active_[j].prepare(time_s() >= settings_.active_delay_s);
+    if (stepping_.damping > 0.0)
+      apply_damping(model_, model_.joints()[j], std::min(stepping_.damping, max_gain));
+  }
+  if (scene_.kind == SceneKind::push && time_s() < scene_.push_duration_s) {
+    const Vec3 force = scene_.push_force_n * scene_.direction;
+    dBodyAddForce(model_.bodies()[model_.body_of(scene_.target)].id, force.x(), force.y(), force.z());
+  }
+}
+
+double Simulation::push_work(double h) const {
+  if (scene_.kind != SceneKind::push || time_s() >= scene_.push_duration_s) return 0.0;
+  const Vec3 velocity = vec3(dBodyGetLinearVel(model_.bodies()[model_.body_of(scene_.target)].id));
+  return h * scene_.push_force_n * std::max(0.0, scene_.direction.dot(velocity));
+}
+
+double Simulation::prop_energy() const {
+  if (ball_ == nullptr) return 0.0;
+  const RigidState s = read_state(ball_);
+  return kinetic_energy(scene_.ball_mass_kg, ball_inertia_, s) +
+         scene_.ball_mass_kg * settings_.gravity * s.position.y();
+}
+
+void Simulation::save() {
+  saved_.clear();
+  for (const ModelBody& body : model_.bodies()) saved_.push_back(read_state(body.id));
+  if (ball_ != nullptr) saved_.push_back(read_state(ball_));
+}
+
+void Simulation::restore() {
+  for (std::size_t b = 0; b < model_.bodies().size(); ++b) write_state(model_.bodies()[b].id, saved_[b]);
+  if (ball_ != nullptr) write_state(ball_, saved_.back());
+}
+
+void Simulation::check_speeds() const {
+  for (const ModelBody& body : model_.bodies()) {
+    const RigidState s = read_state(body.id);
+    const double speed = s.linear_velocity.norm();
+    if (!(speed < kRunaway) || !s.position.allFinite() || !s.angular_velocity.allFinite())
+      throw Diverged{body.segment, time_s(), speed};
+  }
+}
+
+std::vector<double> Simulation::joint_excesses() const {
+  std::vector<double> result;
+  result.reserve(model_.joints().size());
+  for (const ModelJoint& joint : model_.joints()) result.push_back(excess(joint.range, model_.chart(joint)));
+  return result;
+}
+
+double Simulation::worst_separation() const {
+  double worst = 0.0;
+  for (const ModelJoint& joint : model_.joints()) worst = std::max(worst, model_.separation(joint));
+  return worst;
+}
+
+double Simulation::worst_joint_speed() const {
+  double worst = 0.0;
+  for (const ModelJoint& joint : model_.joints())
+    worst = std::max(worst, (vec3(dBodyGetAngularVel(model_.bodies()[joint.child].id)) -
+                             vec3(dBodyGetAngularVel(model_.bodies()[joint.parent].id)))
+                                .norm());
+  return worst;
+}
+
+/// One ODE step; once more with all rows of a joint that went beyond an edge which had none.
+void Simulation::take_step(double h) {
+  constexpr int kTries = 3;
+  all_rows_.assign(model_.joints().size(), false);
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    add_forces(h);
+    collision_.touch(contacts_, {stepping_.sparse_friction, 0.8});
+    dWorldStep(world_.id(), h);
+    dJointGroupEmpty(world_.contacts());
+    check_speeds();
+    bool again = false;
+    for (std::size_t j = 0; j < passive_.size(); ++j) {
+      if (passive_[j].missed() <= kWorstMiss) continue;
+      all_rows_[j] = true;
+      again = true;
+    }
+    if (!again || attempt + 1 == kTries || !stepping_.adaptive) return;
+    restore();
+  }
+}
+
+bool Simulation::try_step(int ticks) {
+  const double h = stepping_.tick_s * ticks;
+  save();
+  set_erp(h);
+  take_step(h);
+  const std::vector<double> excesses = joint_excesses();
+  const double separation = worst_separation();
+  const bool can_halve = stepping_.adaptive && ticks > 1;
+  if (can_halve &&
+      (separation > kWorstSeparation || *std::max_element(excesses.begin(), excesses.end()) > kWorstExcess)) {
+    restore();
+    return false;
+  }
+  if (projecting()) model_.project();
+  Contacts next = collision_.find();
+  double sinking = 0.0;
+  for (std::size_t p = 0; p < next.depth.size(); ++p)
+    sinking = std::max(sinking, next.depth[p] - contacts_.depth[p]);
+  if (can_halve && sinking > kWorstSinking) {
+    restore();
+    return false;
+  }
+  accept(ticks, excesses, separation, std::move(next));
+  return true;
+}
+
+void Simulation::advance(int ticks) {
+  if (try_step(ticks)) return;
+  recorder_.rejected();
+  advance(ticks / 2);
+  advance(ticks / 2);
+}
+
+void Simulation::accept(int ticks, const std::vector<double>& excesses, double separation, Contacts next) {
+  const double h = stepping_.tick_s * ticks;
+  const double work = push_work(h);
+  ticks_ += ticks;
+  contacts_ = std::move(next);
+  double projected = 0.0;
+  if (projecting())
+    for (const double value : joint_excesses()) projected = std::max(projected, value);
+  recorder_.excess_of_step(excesses, projected);
+  recorder_.step(time_s(), h, contacts_, prop_energy(), work, separation);
+  calm_steps_ = worst_joint_speed() < kCalmSpeed ? calm_steps_ + 1 : 0;
+  watch_rest(ticks);
+  before_ = now_;
+  ball_before_ = ball_now_;
+  now_ = model_.segments();
+  if (ball_ != nullptr) ball_now_ = {quat(dBodyGetQuaternion(ball_)), vec3(dBodyGetPosition(ball_))};
+  add_frames_until(time_s());
+  before_s_ = time_s();
+}
+
+void Simulation::watch_rest(int ticks) {
+  bool still = true;
+  for (const ModelBody& body : model_.bodies())
+    still = still && vec3(dBodyGetLinearVel(body.id)).norm() < kRestSpeed &&
+            vec3(dBodyGetAngularVel(body.id)).norm() < kRestTurning;
+  still_s_ = still ? still_s_ + stepping_.tick_s * ticks : 0.0;
+  if (still_s_ < kRestSpan_s || resting_) return;
+  resting_ = true;
+  recorder_.rest(time_s() - still_s_);
+}
+
+/// Frames whose time lies in (before, time_s]; a frame on the step's end is the state itself.
+void Simulation::add_frames_until(double time_s) {
+  const double slack = 1e-6 * stepping_.tick_s;
+  for (;;) {
+    const double frame_s = static_cast<double>(trajectory_.frames.size()) / settings_.fps;
+    if (frame_s > time_s + slack || frame_s > settings_.duration_s + slack) return;
+    const double span = time_s - before_s_;
+    const double u = span > 0.0 ? (frame_s - before_s_) / span : 1.0;
+    const bool on_end = std::abs(frame_s - time_s) <= slack;
+    trajectory_.frames.push_back(on_end ? now_ : between(before_, now_, u));
+    for (Prop& prop : trajectory_.props)
+      prop.poses.push_back(
+          on_end ? ball_now_
+                 : Rigid{ball_before_.rotation.slerp(u, ball_now_.rotation),
+                         ball_before_.translation + u * (ball_now_.translation - ball_before_.translation)});
+  }
+}
+
+SimulationResult Simulation::run(Diagnostics& diagnostics) {
+  start_scene(diagnostics);
+  contacts_ = collision_.find();
+  now_ = before_ = model_.segments();
+  recorder_.step(0.0, 0.0, contacts_, prop_energy(), 0.0, 0.0);
+  add_frames_until(0.0);
+  const long end = std::lround(std::ceil(settings_.duration_s / stepping_.tick_s - 1e-6));
+  while (ticks_ < end && !(resting_ && settings_.stop_at_rest && stepping_.adaptive)) {
+    const bool on_calm_grid = ticks_ % stepping_.calm_ticks == 0;
+    const int ticks = calm_steps_ >= kCalmSteps && on_calm_grid ? stepping_.calm_ticks : stepping_.base_ticks;
+    advance(ticks);
+  }
+  // At rest the pose is held to the end.
+  before_ = now_;
+  ball_before_ = ball_now_;
+  before_s_ = time_s();
+  add_frames_until(settings_.duration_s);
+  SimulationResult result;
+  result.limits = recorder_.limits(projecting());
+  result.figures = recorder_.figures();
+  result.trajectory = std::move(trajectory_);
+  return result;
+}
+
+Error usage(std::string what, std::string fix) {
+  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+std::optional<Error> refuse(const SimulationSettings& settings, const Scene& scene) {
+  if (!(settings.duration_s > 0.0)) return usage("the duration must be above 0 s", "give --duration");
+  if (!(settings.fps > 0.0)) return usage("the frame rate must be above 0", "give --fps");
+  if (settings.fixed_hz < 0.0) return usage("the rate must be above 0 Hz", "give --rate fixed:480");
+  const double h = settings.fixed_hz > 0.0 ? 1.0 / settings.fixed_hz : 1.0 / 120.0;
+  if (settings.active == Active::explicit_torque && settings.active_k * h > kMaxExplicitGain)
+    return usage(
+        fmt::format("the explicit active restriction is unstable at k = {:g} 1/s with steps of {:.4g} s",
+                    settings.active_k, h),
+        fmt::format("use --active implicit, k up to {:g}, or a higher --rate", kMaxExplicitGain / h));
+  if (!(scene.direction.norm() > 0.5)) return usage("the blow has no direction", "give --from");
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMotion& range,
+                                  const StartState& start, const Scene& scene,
+                                  const SimulationSettings& settings, Diagnostics& diagnostics) {
+  if (const auto refused = refuse(settings, scene)) return *refused;
+  Result<ActiveThresholds> thresholds = load_active_thresholds(settings.active_file);
+  if (!thresholds) return thresholds.error();
+  std::unique_ptr<Simulation> simulation;
+  try {
+    static const bool look_ahead = look_ahead_works();
+    if (!look_ahead && settings.limits == Limits::edges)
+      return Error{ErrorKind::internal,
+                   "",
+                   0,
+                   0,
+                   "",
+                   "this version of ODE does not take stops ahead as limits (StopERP -1), as 0.16.2 does",
+                   "build with ODE 0.16.2, or use --limits segments"};
+    simulation = std::make_unique<Simulation>(body, range, *thresholds, start, scene, settings);
+    return simulation->run(diagnostics);
+  } catch (const Diverged& diverged) {
+    return Error{
+        ErrorKind::simulation,
+        "",
+        0,
+        0,
+        std::string(name(diverged.segment)),
+        fmt::format("the simulation diverged at {:.3f} s: {:.3g} m/s", diverged.time_s, diverged.speed),
+        "use a weaker blow, a plausible --mass and --height, or --rate fixed:960"};
+  } catch (const OdeFailure& failure) {
+    if (simulation) simulation->poison();
+    return Error{ErrorKind::simulation,
+                 "",
+                 0,
+                 0,
+                 "",
+                 fmt::format("the physics engine failed: {}", failure.what()),
+                 "use a weaker blow, or a plausible --mass and --height"};
+  }
+}
+
+}  // namespace ukemi

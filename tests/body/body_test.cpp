@@ -1,0 +1,77 @@
+#include "body/body.h"
+
+#include <Eigen/Eigenvalues>
+#include <random>
+
+#include "body/anthropometry.h"
+#include "body/shapes.h"
+#include "simulate/standing_man.h"
+
+namespace ukemi {
+namespace {
+
+TEST(Anthropometry, MassFractionsSumToTheWholeBody) {
+  for (const Sex sex : {Sex::male, Sex::female}) {
+    double sum = 0.0;
+    for (int s = 0; s < kSegmentCount; ++s) sum += segment_table(segment_at(s), sex).mass_fraction;
+    EXPECT_NEAR(sum, 1.0, 2e-4) << "the female column of the source sums to 0.9999";
+  }
+  EXPECT_NEAR(default_mass_kg(1.741, Sex::male), 73.0, 1e-12);
+}
+
+TEST(Body, SegmentsHaveDeLevasMassesAndInertias) {
+  const test::StandingMan man;
+  const BodySegment& thigh = man.body.segments[index(Segment::thigh_l)];
+  EXPECT_NEAR(thigh.mass_kg, 0.1416 * man.body.mass_kg, 1e-12);
+  const double length =
+      (man.segments[index(Segment::shank_l)].translation - man.segments[index(Segment::thigh_l)].translation)
+          .norm();
+  EXPECT_NEAR(thigh.inertia(0, 0), thigh.mass_kg * std::pow(0.329 * length, 2), 1e-9);
+  EXPECT_NEAR(thigh.inertia(1, 1), thigh.mass_kg * std::pow(0.149 * length, 2), 1e-9);
+  for (const BodySegment& segment : man.body.segments) {
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(segment.inertia);
+    EXPECT_GT(solver.eigenvalues().minCoeff(), 0.0);
+    EXPECT_LE(solver.eigenvalues()[2], solver.eigenvalues()[0] + solver.eigenvalues()[1] + 1e-12);
+  }
+}
+
+TEST(Body, LeftAndRightAreMirrored) {
+  const test::StandingMan man;
+  for (int s = 0; s < kSegmentCount; ++s) {
+    const BodySegment& here = man.body.segments[s];
+    const BodySegment& there = man.body.segments[index(mirror_of(segment_at(s)))];
+    EXPECT_DOUBLE_EQ(here.mass_kg, there.mass_kg);
+    const Vec3 c = there.centre_of_mass;
+    EXPECT_LT((here.centre_of_mass - Vec3(c.x(), c.y(), -c.z())).norm(), 1e-12);
+    EXPECT_NEAR(here.shapes[0].radius, there.shapes[0].radius, 1e-12);
+  }
+}
+
+TEST(Shapes, ACapsuleRecoversTheRadiusOfACylindricalLimb) {
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<Vec3> skin;
+  const Vec3 end(0.0, -0.4, 0.0);
+  for (int i = 0; i < 500; ++i) {
+    const double angle = 2.0 * kPi * unit(generator);
+    skin.push_back({0.06 * std::cos(angle), -0.4 * unit(generator), 0.06 * std::sin(angle)});
+  }
+  const Shape shape = fit_shape(Segment::thigh_l, end, 1.75, skin);
+  EXPECT_EQ(shape.kind, ShapeKind::capsule);
+  EXPECT_NEAR(shape.radius, 0.06, 1e-9);
+  EXPECT_NEAR(shape.length, 0.4, 1e-12);
+  EXPECT_LT((shape.segment_from_shape * Vec3(0, 0.2, 0) - end).norm(), 1e-9);
+}
+
+TEST(Shapes, AFootBoxStandsOnItsSole) {
+  std::vector<Vec3> skin;
+  for (const double x : {-0.06, 0.0, 0.1, 0.2})
+    for (const double y : {-0.08, -0.04, 0.0})
+      for (const double z : {-0.04, 0.04}) skin.push_back({x, y, z});
+  const Shape shape = fit_shape(Segment::foot_l, {0.14, -0.05, 0.0}, 1.75, skin);
+  EXPECT_NEAR(shape.segment_from_shape.translation.y() - 0.5 * shape.size.y(), -0.08, 1e-12);
+  EXPECT_NEAR(shape.size.x(), 0.26, 1e-12);
+}
+
+}  // namespace
+}  // namespace ukemi

@@ -1,0 +1,210 @@
+#include "simulate/simulate.h"
+
+#include <random>
+
+#include "simulate/limits.h"
+#include "simulate/standing_man.h"
+
+namespace ukemi {
+namespace {
+
+using test::run;
+using test::StandingMan;
+
+Scene still() {
+  Scene scene;
+  scene.kind = SceneKind::impulse;
+  scene.impulse_n_s = 0.0;
+  scene.direction = Vec3::UnitX();
+  return scene;
+}
+
+Scene random_hit(std::uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  Scene scene;
+  scene.target = segment_at(static_cast<int>(unit(generator) * kSegmentCount));
+  const double azimuth = 2.0 * kPi * unit(generator);
+  scene.direction = Vec3(std::cos(azimuth), 0.0, std::sin(azimuth));
+  scene.ball_mass_kg = 5.0 + 5.0 * unit(generator);
+  scene.ball_speed_m_s = 5.0 + 10.0 * unit(generator);
+  scene.ball_radius_m = 0.15;
+  return scene;
+}
+
+Vec3 centre_of_mass(const StandingMan& man, const BodyPose& pose) {
+  Vec3 sum = Vec3::Zero();
+  for (int s = 0; s < kSegmentCount; ++s)
+    sum += man.body.segments[s].mass_kg * (pose[s] * man.body.segments[s].centre_of_mass);
+  return sum / man.body.mass_kg;
+}
+
+void raise(StandingMan& man, double height) {
+  for (Rigid& segment : man.segments) segment.translation.y() += height;
+}
+
+TEST(LookAhead, OdeTreatsAStopAheadAsALimitOnTheStep) { EXPECT_TRUE(look_ahead_works()); }
+
+TEST(Simulate, FreeFallIsTheSemiImplicitClosedForm) {
+  StandingMan man;
+  raise(man, 50.0);
+  SimulationSettings settings;
+  settings.fixed_hz = 480.0;
+  settings.fps = 480.0;
+  settings.duration_s = 1.0;
+  const auto result = run(man, still(), settings);
+  ASSERT_EQ(result.trajectory.frames.size(), 481u);
+  const double h = 1.0 / 480.0;
+  const double start = centre_of_mass(man, man.segments).y();
+  for (int n = 0; n <= 480; n += 32)
+    EXPECT_NEAR(centre_of_mass(man, result.trajectory.frames[n]).y(),
+                start - 9.81 * h * h * n * (n + 1) / 2.0, 1e-9);
+}
+
+TEST(Simulate, MomentumInFlightIsKeptWhileLimitsAreHit) {
+  StandingMan man;
+  raise(man, 50.0);
+  SimulationSettings settings;
+  settings.gravity = 0.0;
+  settings.fixed_hz = 480.0;
+  settings.duration_s = 1.0;
+  settings.limits = Limits::segments;  // no projection, which moves bodies without forces
+  settings.active = Active::off;
+  Scene kick = still();
+  kick.target = Segment::hand_r;
+  kick.impulse_n_s = 20.0;
+  kick.direction = Vec3(0.6, 0.8, 0.0);
+  const auto result = run(man, kick, settings);
+  EXPECT_GT(result.limits.excess_max_deg, 0.0) << "no limit was hit";
+  const Vec3 start = centre_of_mass(man, man.segments);
+  for (std::size_t i = 0; i < result.trajectory.frames.size(); ++i) {
+    const Vec3 moved = centre_of_mass(man, result.trajectory.frames[i]) - start;
+    const Vec3 expected = static_cast<double>(i) / 60.0 * 20.0 / man.body.mass_kg * kick.direction;
+    EXPECT_LT((moved - expected).norm(), 1e-12 + 1e-12 * static_cast<double>(i));
+  }
+}
+
+TEST(Simulate, RandomHitsStayInsideTheRange) {
+  const StandingMan man;
+  long samples = 0;
+  for (std::uint64_t seed = 0; seed < 25; ++seed) {
+    const auto result = run(man, random_hit(seed), {});
+    samples += result.limits.samples;
+    EXPECT_EQ(result.limits.over_1deg, 0) << seed;
+    EXPECT_LT(result.limits.excess_max_deg, 1.0) << seed;
+    EXPECT_LT(result.limits.excess_projected_max_deg, 0.001) << seed;
+    EXPECT_LT(result.figures.joint_separation_max_m, 0.010) << seed;
+    EXPECT_LT(result.figures.energy_gain_max_j, 6.0) << seed;
+    EXPECT_LT(result.figures.floor_penetration_max_m, 0.012) << seed;
+    for (const BodyPose& frame : result.trajectory.frames)
+      for (const Rigid& segment : frame) ASSERT_TRUE(segment.translation.allFinite());
+  }
+  EXPECT_GT(samples, 25 * 17 * 200);
+}
+
+TEST(Simulate, IndependentAxesLetJointsLeaveTheRange) {
+  const StandingMan man;
+  SimulationSettings edges;
+  SimulationSettings axis;
+  edges.fixed_hz = axis.fixed_hz = 480.0;
+  axis.limits = Limits::axis;
+  const double ours = run(man, random_hit(1001), edges).limits.excess_max_deg;
+  const double theirs = run(man, random_hit(1001), axis).limits.excess_max_deg;
+  EXPECT_LT(ours, 3.0);
+  EXPECT_GT(theirs, 10.0);
+}
+
+TEST(Simulate, TheSameInputGivesTheSameBitsAtAnyFrameRate) {
+  const StandingMan man;
+  SimulationSettings settings;
+  const auto first = run(man, random_hit(7), settings);
+  EXPECT_EQ(first.figures.hash, run(man, random_hit(7), settings).figures.hash);
+  settings.fps = 25.0;
+  EXPECT_EQ(first.figures.hash, run(man, random_hit(7), settings).figures.hash);
+  settings.active = Active::off;
+  EXPECT_NE(first.figures.hash, run(man, random_hit(7), settings).figures.hash);
+}
+
+TEST(Simulate, FrameZeroIsTheStartAndFramesOnStepEndsAgreeAcrossRates) {
+  const StandingMan man;
+  SimulationSettings settings;
+  const auto at60 = run(man, random_hit(3), settings);
+  settings.fps = 120.0;
+  const auto at120 = run(man, random_hit(3), settings);
+  for (int s = 0; s < kSegmentCount; ++s)
+    EXPECT_LT((at60.trajectory.frames[0][s].translation - man.segments[s].translation).norm(), 1e-12);
+  ASSERT_EQ(at120.trajectory.frames.size(), 2 * at60.trajectory.frames.size() - 1);
+  for (std::size_t i = 0; i < at60.trajectory.frames.size(); ++i)
+    EXPECT_EQ(at60.trajectory.frames[i][0].translation, at120.trajectory.frames[2 * i][0].translation);
+}
+
+TEST(Simulate, ActiveRestrictionSlowsTheBlow) {
+  const StandingMan man;
+  SimulationSettings with;
+  SimulationSettings without;
+  without.active = Active::off;
+  with.duration_s = without.duration_s = 1.0;
+  with.active_k = 30.0;
+  Scene punch = still();
+  punch.target = Segment::forearm_l;
+  punch.impulse_n_s = 15.0;
+  double turned_with = 0.0;
+  double turned_without = 0.0;
+  const auto a = run(man, punch, with);
+  const auto b = run(man, punch, without);
+  for (std::size_t i = 0; i < 12; ++i) {
+    const auto bend = [](const BodyPose& pose) {
+      return angle_between(pose[index(Segment::upperarm_l)].rotation, pose[index(Segment::forearm_l)].rotation);
+    };
+    turned_with += bend(a.trajectory.frames[i]);
+    turned_without += bend(b.trajectory.frames[i]);
+  }
+  EXPECT_LT(turned_with, 0.9 * turned_without);
+}
+
+TEST(Simulate, ExplicitActiveRestrictionIsRefusedWhereItExplodes) {
+  const StandingMan man;
+  SimulationSettings settings;
+  settings.active = Active::explicit_torque;
+  settings.fixed_hz = 480.0;
+  settings.active_k = 60.0;
+  StartState start;
+  start.segments = man.segments;
+  Diagnostics diagnostics;
+  const auto refused = simulate(man.body, man.range, start, random_hit(1), settings, diagnostics);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::usage);
+  EXPECT_NE(refused.error().what.find("k = 60"), std::string::npos);
+  settings.active_k = 20.0;
+  EXPECT_TRUE(simulate(man.body, man.range, start, random_hit(1), settings, diagnostics));
+}
+
+TEST(Simulate, TheBallStartsTouchingTheTargetAndPushesItAlong) {
+  const StandingMan man;
+  Scene scene;
+  scene.target = Segment::chest;
+  scene.direction = -Vec3::UnitX();  // from the front
+  SimulationSettings settings;
+  settings.duration_s = 0.3;
+  const auto result = run(man, scene, settings);
+  EXPECT_GT(result.trajectory.impact_point.x(), 0.05);
+  EXPECT_LT(result.trajectory.impact_point.x(), 0.25);
+  EXPECT_LT(result.trajectory.frames.back()[index(Segment::chest)].translation.x(), -0.05);
+  EXPECT_NEAR(result.figures.momentum_n_s, 30.0, 1e-12);
+}
+
+TEST(Simulate, AFallenBodyComesToRestAndIsHeld) {
+  const StandingMan man;
+  Scene scene;
+  scene.direction = -Vec3::UnitX();
+  SimulationSettings settings;
+  settings.duration_s = 6.0;
+  const auto result = run(man, scene, settings);
+  ASSERT_TRUE(result.figures.rest_time_s);
+  EXPECT_LT(*result.figures.rest_time_s, 6.0);
+  EXPECT_EQ(result.trajectory.frames.size(), 361u);
+  EXPECT_LT(result.trajectory.frames.back()[index(Segment::head)].translation.y(), 0.5);
+}
+
+}  // namespace
+}  // namespace ukemi
