@@ -1,9 +1,12 @@
 // The OpenGL functions that the painter calls, found at run time: the same table serves OSMesa and EGL.
+// Headers of other projects are included by .cpp files alone: include <GL/glcorearb.h> first.
 #pragma once
 
-#include <GL/glcorearb.h>
+#ifndef __gl_glcorearb_h_
+#error "include <GL/glcorearb.h> before this header"
+#endif
 
-#include <functional>
+#include "render/offscreen.h"
 
 #define UKEMI_GL_FUNCTIONS(X)                                       \
   X(ActiveTexture, ACTIVETEXTURE)                                   \
@@ -65,15 +68,13 @@
 
 namespace ukemi {
 
-using GlLoader = std::function<void*(const char* name)>;
-
 struct Gl {
 #define UKEMI_GL_MEMBER(name, upper) PFNGL##upper##PROC name = nullptr;
   UKEMI_GL_FUNCTIONS(UKEMI_GL_MEMBER)
 #undef UKEMI_GL_MEMBER
 
-  /// Fills the table; false when the loader lacks a function.
-  [[nodiscard]] bool load(const GlLoader& loader);
+  /// Fills the table; false when the context lacks a function.
+  [[nodiscard]] bool load(const Offscreen& context);
 };
 
 }  // namespace ukemi

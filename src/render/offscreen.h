@@ -5,7 +5,6 @@
 #include <string>
 
 #include "base/result.h"
-#include "render/gl.h"
 
 namespace ukemi {
 
@@ -14,10 +13,8 @@ namespace ukemi {
 class Offscreen {
  public:
   virtual ~Offscreen() = default;
-  const Gl& gl() const { return gl_; }
-
- protected:
-  Gl gl_;
+  /// The OpenGL function of that name, or null.
+  virtual void* find_function(const char* name) const = 0;
 };
 
 enum class OffscreenKind { any, osmesa, egl };

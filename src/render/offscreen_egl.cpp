@@ -46,6 +46,10 @@ class EglContext : public Offscreen {
     return true;
   }
 
+  void* find_function(const char* name) const override {
+    return reinterpret_cast<void*>(egl_.get_proc_address(name));
+  }
+
  private:
   bool open_display() {
     const auto get_display =
@@ -66,8 +70,7 @@ class EglContext : public Offscreen {
                                            EGL_NONE};
     context_ = egl_.create_context(display_, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     return context_ != EGL_NO_CONTEXT &&
-           egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) &&
-           gl_.load([&](const char* name) { return reinterpret_cast<void*>(egl_.get_proc_address(name)); });
+           egl_.make_current(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
   }
 
   SharedLibrary library_{"libEGL.so.1"};

@@ -1,9 +1,12 @@
 #include "render/painter.h"
 
+#include <GL/glcorearb.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "render/gl.h"
 #include "render/shaders.h"
 
 namespace ukemi {
@@ -100,7 +103,7 @@ void blur(std::vector<float>& map, int size, double radius_px) {
 
 struct Painter::State {
   std::unique_ptr<Offscreen> context;
-  const Gl& gl;
+  Gl gl;
   int width, height;
   GLuint surface = 0, depth = 0, flat = 0, floor = 0;                        // programs
   GLuint multisampled = 0, resolved = 0, light_target = 0, flat_target = 0;  // framebuffers
@@ -110,7 +113,7 @@ struct Painter::State {
   std::string trouble;
 
   State(std::unique_ptr<Offscreen> offscreen, int w, int h)
-      : context(std::move(offscreen)), gl(context->gl()), width(w), height(h) {}
+      : context(std::move(offscreen)), width(w), height(h) {}
 
   // Set-up.
   bool set_up(const std::vector<Picture>& pictures);
@@ -253,6 +256,10 @@ void Painter::State::make_buffers() {
 }
 
 bool Painter::State::set_up(const std::vector<Picture>& pictures) {
+  if (!gl.load(*context)) {
+    trouble = "an OpenGL function is missing";
+    return false;
+  }
   surface = link(shaders::kSurfaceVertex, shaders::kSurfaceFragment);
   depth = link(shaders::kDepthVertex, shaders::kDepthFragment);
   flat = link(shaders::kFlatVertex, shaders::kFlatFragment);
