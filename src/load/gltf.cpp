@@ -9,6 +9,7 @@
 #include "load/gltf_accessors.h"
 #include "load/gltf_container.h"
 #include "load/gltf_mesh.h"
+#include "load/gltf_reader.h"
 #include "load/json_view.h"
 #include "load/load.h"
 #include "load/text.h"
@@ -33,41 +34,16 @@ bool is_supported(const std::string& extension) {
          extension.starts_with("VRMC_");
 }
 
-/// Translation, rotation and scale of an affine matrix; nothing when it shears.
-std::optional<LocalTransform> decompose(const Eigen::Matrix4d& matrix) {
-  LocalTransform local;
-  local.translation = matrix.block<3, 1>(0, 3);
-  Mat3 linear = matrix.block<3, 3>(0, 0);
-  const double largest = linear.colwise().norm().maxCoeff();
-  if (largest == 0.0) {
-    local.scale.setZero();
-    return local;
-  }
-  local.scale = linear.colwise().norm();
-  for (int axis = 0; axis < 3; ++axis)
-    if (local.scale[axis] > 0.0) linear.col(axis) /= local.scale[axis];
-  for (int axis = 0; axis < 3; ++axis)
-    if (local.scale[axis] == 0.0)
-      linear.col(axis) = linear.col((axis + 1) % 3).cross(linear.col((axis + 2) % 3));
-  if (linear.determinant() < 0.0) {
-    local.scale.x() = -local.scale.x();
-    linear.col(0) = -linear.col(0);
-  }
-  constexpr double kLargestShear = 0.01;
-  if ((linear.transpose() * linear - Mat3::Identity()).cwiseAbs().maxCoeff() > kLargestShear)
-    return std::nullopt;
-  local.rotation = rotation_part(linear);
-  return local;
-}
-
 LocalTransform read_transform(const JsonView& node) {
   if (node.find("matrix")) {
     const std::vector<double> numbers = node.numbers("matrix", std::vector<double>(16, 0.0));
     const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix4d>(numbers.data());
+    constexpr double kLargestShear = 0.01;
     const bool affine = (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < 1e-6;
-    const auto local = affine ? decompose(matrix) : std::nullopt;
-    if (!local) node.at("matrix").refuse("is no translation, rotation and scale");
-    return *local;
+    const load::Decomposition parts = load::decompose(matrix);
+    if (!affine || parts.shear > kLargestShear)
+      node.at("matrix").refuse("is no translation, rotation and scale");
+    return parts.local;
   }
   LocalTransform local;
   local.translation = Vec3(node.numbers("translation", {0, 0, 0}).data());
@@ -85,8 +61,7 @@ class GltfReader {
   GltfReader(const std::filesystem::path& path, Diagnostics& diagnostics)
       : path_(path), diagnostics_(diagnostics) {}
 
-  Character read(std::span<const std::uint8_t> bytes) {
-    load::GltfContainer container = load::split_container(bytes);
+  Character read(load::GltfContainer container) {
     container.document.folder = path_.parent_path();
     const load::JsonDocument document(text_of(container.document));
     const JsonView root = document.root();
@@ -319,12 +294,11 @@ class GltfReader {
   std::vector<bool> in_scene_;
 };
 
-}  // namespace
-
-Result<Character> read_gltf(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
-                            Diagnostics& diagnostics) {
+/// Runs `read`, whose refusals become Errors about the file.
+template <typename Read>
+Result<Character> with_errors(const std::filesystem::path& path, const Read& read) {
   try {
-    return GltfReader(path, diagnostics).read(bytes);
+    return read();
   } catch (const Refusal& refusal) {
     Error error = load::input_error(path, refusal.line, refusal.message, refusal.fix);
     error.column = refusal.column;
@@ -332,6 +306,43 @@ Result<Character> read_gltf(std::span<const std::uint8_t> bytes, const std::file
   } catch (const std::bad_alloc&) {
     return load::input_error(path, 0, "needs more memory than there is", "use a smaller file");
   }
+}
+
+}  // namespace
+
+namespace load {
+
+Decomposition decompose(const Eigen::Matrix4d& matrix) {
+  Decomposition parts;
+  LocalTransform& local = parts.local;
+  local.translation = matrix.block<3, 1>(0, 3);
+  Mat3 linear = matrix.block<3, 3>(0, 0);
+  local.scale = linear.colwise().norm();
+  if (local.scale.isZero(0.0)) return parts;
+  for (int axis = 0; axis < 3; ++axis)
+    if (local.scale[axis] > 0.0) linear.col(axis) /= local.scale[axis];
+  for (int axis = 0; axis < 3; ++axis)
+    if (local.scale[axis] == 0.0)
+      linear.col(axis) = linear.col((axis + 1) % 3).cross(linear.col((axis + 2) % 3));
+  if (linear.determinant() < 0.0) {
+    local.scale.x() = -local.scale.x();
+    linear.col(0) = -linear.col(0);
+  }
+  parts.shear = (linear.transpose() * linear - Mat3::Identity()).cwiseAbs().maxCoeff();
+  local.rotation = rotation_part(linear);
+  return parts;
+}
+
+Result<Character> read_container(GltfContainer container, const std::filesystem::path& path,
+                                 Diagnostics& diagnostics) {
+  return with_errors(path, [&] { return GltfReader(path, diagnostics).read(std::move(container)); });
+}
+
+}  // namespace load
+
+Result<Character> read_gltf(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
+                            Diagnostics& diagnostics) {
+  return with_errors(path, [&] { return GltfReader(path, diagnostics).read(load::split_container(bytes)); });
 }
 
 }  // namespace ukemi

@@ -1,9 +1,5 @@
 #include "load/load.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-
 #include "base/files.h"
 #include "load/text.h"
 
@@ -29,8 +25,7 @@ Result<Character> load_character(const std::filesystem::path& path, const LoadOp
     return read_bvh({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path, diagnostics);
   if (extension == ".glb" || extension == ".gltf" || extension == ".vrm" || extension == ".vrma")
     return read_gltf(*bytes, path, diagnostics);
-  return load::input_error(path, 0, fmt::format("extension '{}' is not known", extension),
-                           "use a .glb, .gltf, .vrm or .bvh file");
+  return read_with_assimp(*bytes, path, diagnostics);
 }
 
 }  // namespace ukemi
