@@ -108,7 +108,8 @@ void declare_method(Options& options, BakeSettings& settings) {
   options.number("--active-k", "1_S", simulation.active_k, Range{0.0, 2000.0, true}, "its strength k");
   options.number("--active-delay", "S", simulation.active_delay_s, Range{0.0, 10.0},
                  "time before it sets in");
-  options.number("--damping", "1_S", simulation.damping, Range{0.0, 100.0}, "joint damping");
+  options.number("--damping", "1_S", simulation.damping, Range{0.0, 100.0},
+                 "joint damping; 10, or 0 with --rate fixed");
   options.custom(
       "--rate", "adaptive|fixed:HZ",
       [&simulation](const std::string& text) { return take_rate(simulation, text); },
