@@ -112,19 +112,24 @@ struct Assembler {
     return best;
   }
 
+  /// The only child, where it is an end or has no name; else -1 (a weapon, a mesh).
+  int only_end_below(int node) const {
+    if (children[node].size() != 1) return -1;
+    const int child = children[node][0];
+    return skeleton.nodes[child].name.empty() || read_name(skeleton.nodes[child].name).end ? child : -1;
+  }
+
   void landmarks() {
     for (int side = 0; side < 2; ++side) {
       const Segment foot = side == 0 ? Segment::foot_l : Segment::foot_r;
       const Segment hand = side == 0 ? Segment::hand_l : Segment::hand_r;
       if (!at(foot).fused()) {
         humanoid.toes[side] = best_below(at(foot).node(), Part::toe);
-        if (humanoid.toes[side] < 0 && children[at(foot).node()].size() == 1)
-          humanoid.toes[side] = children[at(foot).node()][0];
+        if (humanoid.toes[side] < 0) humanoid.toes[side] = only_end_below(at(foot).node());
       }
       if (!at(hand).fused()) {
         humanoid.middle_finger[side] = best_below(at(hand).node(), Part::finger);
-        if (humanoid.middle_finger[side] < 0 && children[at(hand).node()].size() == 1)
-          humanoid.middle_finger[side] = children[at(hand).node()][0];
+        if (humanoid.middle_finger[side] < 0) humanoid.middle_finger[side] = only_end_below(at(hand).node());
       }
     }
     humanoid.head_top = best_below(at(Segment::head).node(), Part::head_top);

@@ -130,7 +130,7 @@ void pelvis_by_name(const Reader& reader, Bones& bones) {
   for (const Candidate& c : reader.candidates(Part::pelvis, Side::none, false)) {
     const bool related =
         fork < 0 || is_at_or_below(skeleton, c.node, fork) || skeleton.nodes[c.node].parent == fork;
-    const int score = c.score + (c.node == fork ? 20 : 0) + (related ? 10 : 0);
+    const int score = c.score + (c.node == fork ? 4 : 0) + (related ? 10 : 0);
     if (score > best.score) best = {c.node, score};
   }
   if (best.node >= 0) bones.set(Segment::pelvis, best.node, "name");
@@ -266,6 +266,25 @@ bool complete(const Bones& bones) {
   return std::all_of(std::begin(kMustHave), std::end(kMustHave), [&](Segment s) { return bones[s] >= 0; });
 }
 
+/// For the message: single bones whose limb is not complete, upper before lower.
+void add_stray_bones(const Reader& reader, Bones& bones) {
+  constexpr std::pair<Segment, Part> kParts[] = {{Segment::upperarm_l, Part::upper_arm},
+                                                 {Segment::forearm_l, Part::forearm},
+                                                 {Segment::thigh_l, Part::thigh},
+                                                 {Segment::shank_l, Part::shank}};
+  for (const auto& [left, part] : kParts)
+    for (const Side side : {Side::left, Side::right}) {
+      const Segment segment = side == Side::left ? left : mirror_of(left);
+      if (bones[segment] >= 0) continue;
+      Candidate best;
+      for (const Candidate& c : reader.candidates(part, side, false))
+        if (c.score > best.score &&
+            std::find(bones.node.begin(), bones.node.end(), c.node) == bones.node.end())
+          best = c;
+      if (best.node >= 0) bones.set(segment, best.node, "name");
+    }
+}
+
 Error not_a_humanoid(const Character& character, const Bones& bones, bool any_skin) {
   std::vector<std::string> found, missing;
   for (const Segment s : kMustHave) {
@@ -345,7 +364,10 @@ Result<Bones> find_bones(const Character& character, const HumanoidOptions& opti
     Bones shape = find_by_topology(character, rest_pose(character.skeleton));
     if (complete(shape)) fill(bones, shape);
   }
-  if (!complete(bones)) return not_a_humanoid(character, bones, reader.any_skin);
+  if (!complete(bones)) {
+    add_stray_bones(reader, bones);
+    return not_a_humanoid(character, bones, reader.any_skin);
+  }
   return bones;
 }
 

@@ -164,29 +164,81 @@ Pose best_frame(const Character& character, const Humanoid& humanoid, const Vec3
   return best;
 }
 
+/// The pose in which the skin was bound, where inverse-bind matrices give it: joints whose parent is in the
+/// same skin, all others as at rest.
+Pose bind_pose(const Character& character) {
+  const Skeleton& skeleton = character.skeleton;
+  Pose pose = rest_pose(skeleton);
+  std::vector<char> done(pose.size(), 0);
+  for (const Skin& skin : character.skins) {
+    std::vector<int> place(pose.size(), -1);
+    for (std::size_t j = 0; j < skin.joints.size() && j < skin.inverse_bind.size(); ++j)
+      place[skin.joints[j]] = static_cast<int>(j);
+    for (const int node : skin.joints) {
+      const int parent = skeleton.nodes[node].parent;
+      if (done[node] || parent < 0 || place[node] < 0 || place[parent] < 0) continue;
+      const Affine& node_from_mesh = skin.inverse_bind[place[node]];
+      if (std::abs(node_from_mesh.linear().determinant()) < 1e-30) continue;
+      const Affine local = skin.inverse_bind[place[parent]] * node_from_mesh.inverse();
+      pose[node].rotation = rotation_part(local.linear());
+      pose[node].translation = local.translation();
+      done[node] = 1;
+    }
+  }
+  return pose;
+}
+
 struct Reference {
   Pose pose;
   Vec3 up;  // file axes
 };
 
-/// ANATOMICAL_FRAMES 2.2 items 1 and 2.
-Reference find_reference(const Character& character, const Humanoid& humanoid) {
+/// Turned upright where the figure leans against every axis of the file (an armature with a rotation of its
+/// own).
+Reference upright(const Character& character, const Humanoid& humanoid, Pose pose, const Vec3& up) {
+  const Vec3 rise = Figure(character, humanoid, pose).rise();
+  if (angle(rise, up) < radians(25)) return {std::move(pose), up};
+  const Vec3 stands = character.format == SourceFormat::gltf ? Vec3(Vec3::UnitY()) : up;
+  return {turned(character, std::move(pose), shortest_rotation(rise, stands)), stands};
+}
+
+/// A rest pose is as good as the neutral pose when the legs are straight and the arms straight.
+bool clean(const Figure& figure, const Vec3& up) {
+  return usable(figure) && class_of(figure, up) != RestPoseClass::other && leg_tilt(figure, up) < radians(15);
+}
+
+Reference reference_of_motion_file(const Character& character, const Humanoid& humanoid) {
   const Pose rest = rest_pose(character.skeleton);
   const Figure figure(character, humanoid, rest);
-  const bool has_motion = !character.animations.empty() && character.animations[0].tracks.size() > 0;
-  const bool is_bvh = character.format == SourceFormat::bvh;
   const Vec3 rest_up = dominant_axis(figure.rise());
-  const Vec3 up = is_bvh && has_motion ? up_of_motion(character, humanoid) : rest_up;
-  if (!usable(figure) && has_motion) {
-    const Vec3 motion_up = is_bvh ? up : up_of_motion(character, humanoid);
-    return {best_frame(character, humanoid, motion_up), motion_up};
-  }
-  const Pose upright = up == rest_up ? rest : turned(character, rest, shortest_rotation(rest_up, up));
-  if (is_bvh && has_motion && leg_tilt(figure, rest_up) > radians(12)) {
+  const Vec3 up = up_of_motion(character, humanoid);
+  if (!usable(figure)) return {best_frame(character, humanoid, up), up};
+  if (leg_tilt(figure, rest_up) > radians(12)) {
     const Pose first = sample(character.skeleton, character.animations[0], character.animations[0].start_s);
     if (exact_t_pose(Figure(character, humanoid, first), up)) return {first, up};
   }
-  return {upright, up};
+  return {up == rest_up ? rest : turned(character, rest, shortest_rotation(rest_up, up)), up};
+}
+
+/// ANATOMICAL_FRAMES 2.2 items 1 and 2: the zero pose or a frame of a motion file; of a character the rest
+/// pose, the bind pose where that is cleaner, else the best frame of its first animation.
+Reference find_reference(const Character& character, const Humanoid& humanoid) {
+  const bool has_motion = !character.animations.empty() && !character.animations[0].tracks.empty();
+  if (character.format == SourceFormat::bvh && has_motion)
+    return reference_of_motion_file(character, humanoid);
+  const Pose rest = rest_pose(character.skeleton);
+  const Figure figure(character, humanoid, rest);
+  const Vec3 up = dominant_axis(figure.rise());
+  if (!clean(figure, up)) {
+    const Pose bind = bind_pose(character);
+    const Figure bound(character, humanoid, bind);
+    const Vec3 bind_up = dominant_axis(bound.rise());
+    if (clean(bound, bind_up)) return {bind, bind_up};
+  }
+  if (usable(figure)) return upright(character, humanoid, rest, up);
+  if (!has_motion) return {rest, up};
+  const Vec3 motion_up = up_of_motion(character, humanoid);
+  return {best_frame(character, humanoid, motion_up), motion_up};
 }
 
 // --- size
@@ -320,6 +372,21 @@ struct FrameBuilder {
     return sum;
   }
 
+  /// The same from the skin around the foot bones: how much farther it reaches forwards than backwards.
+  double skin_forward() const {
+    double sum = 0.0;
+    for (int side = 0; side < 2; ++side) {
+      const int foot = humanoid.segments[index(kFoot[side])].node();
+      if (foot < 0) continue;
+      const SkinExtent extent = skin_extent(character, figure.world, anterior(), [&](int node) {
+        return is_at_or_below(character.skeleton, foot, node);
+      });
+      const double ankle = figure[kFoot[side]].dot(anterior());
+      if (extent.found) sum += extent.max + extent.min - 2.0 * ankle;
+    }
+    return sum;
+  }
+
   std::optional<Vec3> toe_place(int side) const {
     if (humanoid.toes[side] >= 0) return place(humanoid.toes[side]);
     const int node = humanoid.segments[index(kFoot[side])].node();
@@ -329,13 +396,12 @@ struct FrameBuilder {
   }
 
   /// Items 3 to 8.
-  void build(bool lower_clavicles, double clavicle_angle) {
+  void build(double clavicle_elevation) {
     for (int side = 0; side < 2; ++side) {
-      const double outwards = side == 0 ? 1.0 : -1.0;
-      if (lower_clavicles &&
-          !humanoid.segments[index(side == 0 ? Segment::clavicle_l : Segment::clavicle_r)].fused())
-        frame[index(side == 0 ? Segment::clavicle_l : Segment::clavicle_r)] =
-            w * exp_rotation(Vec3(outwards * clavicle_angle, 0, 0)).toRotationMatrix();
+      const Segment clavicle = side == 0 ? Segment::clavicle_l : Segment::clavicle_r;
+      const double raised = side == 0 ? clavicle_elevation : -clavicle_elevation;  // about anterior
+      if (!humanoid.segments[index(clavicle)].fused())
+        frame[index(clavicle)] = w * exp_rotation(Vec3(raised, 0, 0)).toRotationMatrix();
       arm(side);
       leg(side);
     }
@@ -369,8 +435,11 @@ struct FrameBuilder {
     const Mat3 thigh_frame = shortest_rotation(thigh, -up).conjugate().toRotationMatrix() * w;
     frame[index(kThigh[side])] = thigh_frame;
     frame[index(kShank[side])] = frame_yz(-shank, thigh_frame.col(2));
-    // Item 8: y up once the shank is vertical.
-    const Quat upright = angle(shank, -up) > radians(8) ? shortest_rotation(shank, -up) : Quat::Identity();
+    // Item 8: y up once the shank is vertical. A bent knee (or a foot on a bone of its own) means a flat foot
+    // already.
+    const bool spread = angle(thigh, shank) < radians(20) && !humanoid.segments[index(kFoot[side])].detached;
+    const Quat upright =
+        spread && angle(shank, -up) > radians(8) ? shortest_rotation(shank, -up) : Quat::Identity();
     Vec3 forward = anterior();
     if (const auto toe = toe_place(side)) {
       const Vec3 to_toe = upright * Vec3(*toe - figure[kFoot[side]]);
@@ -380,6 +449,18 @@ struct FrameBuilder {
     frame[index(kFoot[side])] = upright.conjugate().toRotationMatrix() * frame_yx(up, forward);
   }
 };
+
+/// How far raised arms hold the shoulders up (ANATOMICAL_FRAMES 2.3; an A-pose as RANGE_OF_MOTION has it),
+/// radians.
+double clavicle_elevation(RestPoseClass pose) {
+  if (pose == RestPoseClass::t_pose) return radians(8);
+  return pose == RestPoseClass::a_pose ? radians(3) : 0.0;
+}
+
+RestPoseClass class_of_rest(const Character& character, const Humanoid& humanoid) {
+  const Figure rest(character, humanoid, rest_pose(character.skeleton));
+  return usable(rest) ? class_of(rest, dominant_axis(rest.rise())) : RestPoseClass::other;
+}
 
 }  // namespace
 
@@ -392,18 +473,17 @@ Status find_frames(const Character& character, const HumanoidOptions& options, H
         "not a humanoid: bones were found by name, but no pose of the file has a trunk that rises from "
         "two legs with an arm on each side",
         "if the character is a human, check the bones with --map SEGMENT=NODE");
-  if (FrameBuilder(character, humanoid, reference).toes_forward() < 0.0) {
+  const FrameBuilder first(character, humanoid, reference);
+  const double forward = first.toes_forward();
+  if (forward < 0.0 || (forward == 0.0 && first.skin_forward() < 0.0)) {
     swap_sides(humanoid);
     diagnostics.warn(character.path.string(),
                      "left and right are exchanged: the feet point the other way than the names say");
   }
   reference.up = choose_up(character, options, reference.up, diagnostics);
-  const Figure figure(character, humanoid, reference.pose);
-  humanoid.rest_pose = class_of(figure, reference.up);
+  humanoid.rest_pose = class_of_rest(character, humanoid);
   FrameBuilder builder(character, humanoid, reference);
-  const bool raised =
-      humanoid.rest_pose == RestPoseClass::t_pose || humanoid.rest_pose == RestPoseClass::a_pose;
-  builder.build(raised, radians(humanoid.rest_pose == RestPoseClass::t_pose ? 8.0 : 3.0));
+  builder.build(clavicle_elevation(class_of(builder.figure, reference.up)));
   for (int s = 0; s < kSegmentCount; ++s) {
     const Quat node = rotation_part(builder.figure.world[humanoid.carrier_node(segment_at(s))].linear());
     humanoid.node_from_segment[s] = (node.conjugate() * Quat(builder.frame[s])).normalized();

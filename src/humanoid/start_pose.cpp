@@ -88,7 +88,7 @@ void place_arm(Figure& figure, const ArmAngles& arm, bool left) {
 
 /// Thigh and shank from the ankle's place (two-bone solution, knee over the foot), the foot flat on the
 /// floor. `heading`: x forward, y up, z right.
-void place_leg(Figure& figure, const LegStance& leg, double drop, const Quat& heading, bool left) {
+void place_leg(Figure& figure, const LegStance& leg, double drop_m, const Quat& heading, bool left) {
   const Segment thigh = on_side(Segment::thigh_l, left), shank = on_side(Segment::shank_l, left),
                 foot = on_side(Segment::foot_l, left);
   const double outwards = left ? -1.0 : 1.0;
@@ -97,7 +97,7 @@ void place_leg(Figure& figure, const LegStance& leg, double drop, const Quat& he
   const double lower = (figure.from[index(foot)].translation - figure.from[index(shank)].translation).norm();
   const double length = upper + lower;
   const Quat facing = heading * about(Vec3::UnitY(), -outwards * leg.toe_out_deg);
-  Vec3 reach = heading * (length * Vec3(leg.forwards, -drop, outwards * leg.outwards));
+  Vec3 reach = heading * (Vec3(length * leg.forwards, -drop_m, length * outwards * leg.outwards));
   if (reach.norm() > 0.9995 * length) reach *= 0.9995 * length / reach.norm();
   const double d = reach.norm();
   const Vec3 down = reach / d;
@@ -118,6 +118,12 @@ void place_leg(Figure& figure, const LegStance& leg, double drop, const Quat& he
   figure.place(foot, facing);
 }
 
+double leg_length(const BodyPose& from, bool left) {
+  const auto place = [&](Segment s) { return from[index(on_side(s, left))].translation; };
+  return (place(Segment::shank_l) - place(Segment::thigh_l)).norm() +
+         (place(Segment::foot_l) - place(Segment::shank_l)).norm();
+}
+
 Quat heading_of(const Quat& pelvis) {
   const Vec3 forward = pelvis * Vec3::UnitX();
   return exp_rotation(Vec3(0.0, std::atan2(-forward.z(), forward.x()), 0.0));
@@ -136,8 +142,9 @@ BodyPose body_in(const Stance& stance, const BodyPose& from) {
   figure.place_relative(Segment::head, about(z, -stance.neck_flexion_deg) * about(y, stance.neck_turn_deg));
   place_arm(figure, stance.arm_l, true);
   place_arm(figure, stance.arm_r, false);
-  place_leg(figure, stance.leg_l, stance.pelvis_drop, heading, true);
-  place_leg(figure, stance.leg_r, stance.pelvis_drop, heading, false);
+  const double drop_m = stance.pelvis_drop * std::min(leg_length(from, true), leg_length(from, false));
+  place_leg(figure, stance.leg_l, drop_m, heading, true);
+  place_leg(figure, stance.leg_r, drop_m, heading, false);
   return figure.to;
 }
 
