@@ -57,7 +57,7 @@ bool usable(const Figure& f) {
   for (int side = 0; side < 2; ++side) {
     const Vec3 leg = f.link(kThigh[side], kFoot[side]);
     if (angle(leg, -trunk) > radians(50)) return false;
-    if (angle(f.link(kThigh[side], kShank[side]), f.link(kShank[side], kFoot[side])) > radians(60))
+    if (angle(f.link(kThigh[side], kShank[side]), f.link(kShank[side], kFoot[side])) > radians(100))
       return false;
     if (angle(f.link(kUpperArm[side], kForearm[side]), f.link(kForearm[side], kHand[side])) > radians(100))
       return false;
@@ -233,7 +233,9 @@ Reference find_reference(const Character& character, const Humanoid& humanoid) {
     const Pose bind = bind_pose(character);
     const Figure bound(character, humanoid, bind);
     const Vec3 bind_up = dominant_axis(bound.rise());
-    if (clean(bound, bind_up)) return {bind, bind_up};
+    const bool better = usable(bound) && class_of(bound, bind_up) != RestPoseClass::other &&
+                        leg_tilt(bound, bind_up) < leg_tilt(figure, up);
+    if (better) return {bind, bind_up};
   }
   if (usable(figure)) return upright(character, humanoid, rest, up);
   if (!has_motion) return {rest, up};

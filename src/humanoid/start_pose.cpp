@@ -88,7 +88,7 @@ void place_arm(Figure& figure, const ArmAngles& arm, bool left) {
 
 /// Thigh and shank from the ankle's place (two-bone solution, knee over the foot), the foot flat on the
 /// floor. `heading`: x forward, y up, z right.
-void place_leg(Figure& figure, const LegStance& leg, double drop_m, const Quat& heading, bool left) {
+void place_leg(Figure& figure, const LegStance& leg, double ankle_height, const Quat& heading, bool left) {
   const Segment thigh = on_side(Segment::thigh_l, left), shank = on_side(Segment::shank_l, left),
                 foot = on_side(Segment::foot_l, left);
   const double outwards = left ? -1.0 : 1.0;
@@ -97,7 +97,8 @@ void place_leg(Figure& figure, const LegStance& leg, double drop_m, const Quat& 
   const double lower = (figure.from[index(foot)].translation - figure.from[index(shank)].translation).norm();
   const double length = upper + lower;
   const Quat facing = heading * about(Vec3::UnitY(), -outwards * leg.toe_out_deg);
-  Vec3 reach = heading * (Vec3(length * leg.forwards, -drop_m, length * outwards * leg.outwards));
+  Vec3 reach = heading * Vec3(length * leg.forwards, 0.0, length * outwards * leg.outwards);
+  reach.y() = ankle_height - figure.at(thigh).translation.y();
   if (reach.norm() > 0.9995 * length) reach *= 0.9995 * length / reach.norm();
   const double d = reach.norm();
   const Vec3 down = reach / d;
@@ -143,8 +144,9 @@ BodyPose body_in(const Stance& stance, const BodyPose& from) {
   place_arm(figure, stance.arm_l, true);
   place_arm(figure, stance.arm_r, false);
   const double drop_m = stance.pelvis_drop * std::min(leg_length(from, true), leg_length(from, false));
-  place_leg(figure, stance.leg_l, drop_m, heading, true);
-  place_leg(figure, stance.leg_r, drop_m, heading, false);
+  const double ankle_height = figure.at(Segment::pelvis).translation.y() - drop_m;
+  place_leg(figure, stance.leg_l, ankle_height, heading, true);
+  place_leg(figure, stance.leg_r, ankle_height, heading, false);
   return figure.to;
 }
 
