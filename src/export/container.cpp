@@ -11,6 +11,8 @@ void put_u32(std::vector<std::uint8_t>& out, std::size_t value) {
   for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
+constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
 constexpr std::size_t padded(std::size_t size) { return (size + 3) / 4 * 4; }
 
 void put_chunk(std::vector<std::uint8_t>& out, std::uint32_t type, std::span<const std::uint8_t> bytes,
@@ -59,7 +61,6 @@ Result<std::vector<std::uint8_t>> assemble_glb(std::string json, std::span<const
 }
 
 std::string data_uri(std::string_view mime, std::span<const std::uint8_t> bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out = "data:" + std::string(mime) + ";base64,";
   out.reserve(out.size() + (bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -67,6 +68,28 @@ std::string data_uri(std::string_view mime, std::span<const std::uint8_t> bytes)
     std::uint32_t word = 0;
     for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < left ? bytes[i + k] : 0u);
     for (std::size_t k = 0; k < 4; ++k) out += k <= left ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+std::optional<std::vector<std::uint8_t>> data_of(std::string_view uri) {
+  constexpr std::string_view kMark = ";base64,";
+  const std::size_t mark = uri.find(kMark);
+  if (!uri.starts_with("data:") || mark == std::string_view::npos) return std::nullopt;
+  std::string_view text = uri.substr(mark + kMark.size());
+  while (text.ends_with('=')) text.remove_suffix(1);
+  std::vector<std::uint8_t> out;
+  out.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t word = 0;
+  int bits = 0;
+  for (const char c : text) {
+    const std::size_t digit = kDigits.find(c);
+    if (digit == std::string_view::npos) return std::nullopt;
+    word = (word << 6 | static_cast<std::uint32_t>(digit)) & 0xffffff;
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    out.push_back(static_cast<std::uint8_t>(word >> bits));
   }
   return out;
 }

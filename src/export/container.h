@@ -21,6 +21,9 @@ Result<std::vector<std::uint8_t>> assemble_glb(std::string json, std::span<const
 /// "data:MIME;base64,..."
 std::string data_uri(std::string_view mime, std::span<const std::uint8_t> bytes);
 
+/// Content of a base64 data URI; nothing when it is malformed or none.
+std::optional<std::vector<std::uint8_t>> data_of(std::string_view uri);
+
 /// The file that a relative URI names; nothing for data URIs, absolute paths and other schemes.
 std::optional<std::filesystem::path> local_file(std::string_view uri, const std::filesystem::path& folder);
 

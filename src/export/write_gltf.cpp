@@ -21,6 +21,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr int kFloat = 5126;
 constexpr int kUnsignedShort = 5123;
+constexpr int kArrayBuffer = 34962;
 constexpr std::size_t kMaxImageBytes = 512u << 20;
 
 /// The document and the buffer that takes what is added.
@@ -90,21 +91,29 @@ bool same_folder(const fs::path& a, const std::optional<fs::path>& b) {
   return full(a) == full(*b);
 }
 
-/// Images in files of their own become data URIs, or parts of the binary where `into_binary`.
+/// What an image's URI stands for; empty for other schemes and absolute paths, which stay links.
+Result<Bytes> content_of(const std::string& uri, const fs::path& folder) {
+  if (auto data = data_of(uri)) return std::move(*data);
+  const auto path = local_file(uri, folder);
+  if (!path) return Bytes{};
+  return read_file(*path, kMaxImageBytes);
+}
+
+/// Images in files of their own become data URIs; with `into_binary`, they and data URIs go into the binary.
 Status embed_images(Edit& edit, const Character& character, bool into_binary) {
   if (into_binary) array_of(edit.json, "bufferViews");  // before iterators: a new key moves the others
   const auto images = edit.json.find("images");
   if (images == edit.json.end()) return Done{};
   for (Json& image : *images) {
-    if (!is_external(image)) continue;
-    const auto path = local_file(image["uri"].get_ref<const std::string&>(), character.document.folder);
-    if (!path) continue;
-    const auto bytes = read_file(*path, kMaxImageBytes);
+    if (!image.contains("uri") || !(into_binary || is_external(image))) continue;
+    const std::string uri = image["uri"].get<std::string>();
+    const auto bytes = content_of(uri, character.document.folder);
     if (!bytes) return bytes.error();
+    if (bytes->empty()) continue;
     const std::string stated = image.value("mimeType", std::string());
     const std::string mime = stated.empty() ? std::string(image_mime(*bytes)) : stated;
     if (mime.empty())
-      return document_error(character, "image '" + path->string() + "' is no PNG, JPEG, WebP or KTX2",
+      return document_error(character, "image '" + uri.substr(0, 80) + "' is no PNG, JPEG, WebP or KTX2",
                             "convert the image to PNG");
     if (into_binary) {
       image.erase("uri");
@@ -255,17 +264,24 @@ std::size_t add_inverse_binds(Edit& edit, const std::vector<Affine>& inverse_bin
   return add_accessor(edit, add_view(edit, values), 0, kFloat, inverse_bind.size(), "MAT4");
 }
 
+/// Accessor of one value per vertex.
+template <typename T>
+std::size_t add_attribute(Edit& edit, const std::vector<T>& values, int component, const char* type) {
+  const std::size_t view = add_view(edit, values);
+  edit.json["bufferViews"][view]["target"] = kArrayBuffer;
+  return add_accessor(edit, view, 0, component, values.size(), type);
+}
+
 Json vertex_attributes(Edit& edit, const Figure& figure) {
-  const std::size_t count = figure.positions.size();
   std::vector<std::array<std::uint16_t, 4>> joints;
   for (const int node : figure.nodes) joints.push_back({static_cast<std::uint16_t>(node), 0, 0, 0});
-  const std::vector<std::array<float, 4>> weights(count, {1, 0, 0, 0});
-  const std::size_t position = add_accessor(edit, add_view(edit, figure.positions), 0, kFloat, count, "VEC3");
+  const std::vector<std::array<float, 4>> weights(figure.nodes.size(), {1, 0, 0, 0});
+  const std::size_t position = add_attribute(edit, figure.positions, kFloat, "VEC3");
   edit.json["accessors"][position]["min"] = bounds(figure.positions, false);
   edit.json["accessors"][position]["max"] = bounds(figure.positions, true);
-  const std::size_t normal = add_accessor(edit, add_view(edit, figure.normals), 0, kFloat, count, "VEC3");
-  const std::size_t joint = add_accessor(edit, add_view(edit, joints), 0, kUnsignedShort, count, "VEC4");
-  const std::size_t weight = add_accessor(edit, add_view(edit, weights), 0, kFloat, count, "VEC4");
+  const std::size_t normal = add_attribute(edit, figure.normals, kFloat, "VEC3");
+  const std::size_t joint = add_attribute(edit, joints, kUnsignedShort, "VEC4");
+  const std::size_t weight = add_attribute(edit, weights, kFloat, "VEC4");
   return {{"POSITION", position}, {"NORMAL", normal}, {"JOINTS_0", joint}, {"WEIGHTS_0", weight}};
 }
 

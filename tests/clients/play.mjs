@@ -49,7 +49,7 @@ async function loadGlb({ file, animation, nodes }) {
   const gltf = await loader.parseAsync(withoutImages(new Uint8Array(readFileSync(file))), '');
   const byNode = new Map();
   for (const [object, links] of gltf.parser.associations)
-    if (links.nodes !== undefined && object.isObject3D && !byNode.has(links.nodes)) byNode.set(links.nodes, object);
+    if (links?.nodes !== undefined && object.isObject3D && !byNode.has(links.nodes)) byNode.set(links.nodes, object);
   const clip = gltf.animations.find((a) => a.name === animation);
   return { root: gltf.scene, clip, objects: nodes.map((node) => byNode.get(node)) };
 }

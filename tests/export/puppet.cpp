@@ -111,6 +111,7 @@ Puppet make_puppet() {
   const int head = add(s, "Head", neck, {0, 9, 0});
   puppet.humanoid.head_top = add(s, "HeadTop", head, {0, 18, 0});
   puppet.humanoid.root = hips;
+  puppet.humanoid.node_from_segment.fill(Quat::Identity());
   set(puppet.humanoid, Segment::pelvis, {hips});
   set(puppet.humanoid, Segment::abdomen, {spine, spine1});
   set(puppet.humanoid, Segment::chest, {spine2});

@@ -202,7 +202,7 @@ class InFolder : public testing::Test {
     Character character = from_json(R"({"asset":{"version":"2.0"},"nodes":[{"name":"a"}],
 "buffers":[{"uri":"a.bin","byteLength":6},{"uri":"b.bin","byteLength":8}],
 "bufferViews":[{"buffer":0,"byteOffset":1,"byteLength":5},{"buffer":1,"byteLength":8},{"buffer":1,"byteOffset":4,"byteLength":4}],
-"images":[{"uri":"skin%20colour.png"}]})",
+"images":[{"uri":"skin%20colour.png"},{"name":"in text","uri":"data:image/png;base64,iVBORwE="}]})",
                                     {{0, 1, 2, 3, 4, 5}, {10, 11, 12, 13, 14, 15, 16, 17}}, false, 1);
     character.path = folder_ / "source.gltf";
     character.document.folder = folder_;
@@ -234,6 +234,7 @@ TEST_F(WriteGlbInFolder, EmbedsBuffersAndImages) {
   EXPECT_FALSE(image.contains("uri"));
   EXPECT_EQ(image["mimeType"], "image/png");
   EXPECT_EQ(content(image["bufferView"]), (Bytes{0x89, 'P', 'N', 'G', 1, 2, 3}));
+  EXPECT_EQ(content(glb.json["images"][1]["bufferView"]), (Bytes{0x89, 'P', 'N', 'G', 1}));
 }
 
 TEST_F(WriteGlbInFolder, NamesTheImageThatIsMissing) {
