@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ukemi {
 namespace {
@@ -35,29 +36,28 @@ Quat look(double azimuth, double elevation) {
   return Quat(Eigen::AngleAxisd(azimuth, Vec3::UnitY())) * Quat(Eigen::AngleAxisd(-elevation, Vec3::UnitX()));
 }
 
-Framing::Framing(const Camera& camera, double margin) : camera_(camera) {
-  const double t = std::tan(0.5 * camera.vertical_fov) * (1.0 - margin);
-  slope_ = {t * camera.aspect, t};
-  high_ = low_ = Vec2::Constant(-std::numeric_limits<double>::infinity());
+Framing::Framing(const Camera& camera, const Margins& margins) : camera_(camera) {
+  const double t = std::tan(0.5 * camera.vertical_fov);
+  low_slope_ = t * Vec2(camera.aspect * (1.0 - margins.left), 1.0 - margins.bottom);
+  high_slope_ = t * Vec2(camera.aspect * (1.0 - margins.right), 1.0 - margins.top);
+  low_ = high_ = Vec2::Constant(-std::numeric_limits<double>::infinity());
 }
 
 void Framing::add(const Vec3& world_point, double radius) {
   const Vec3 p = camera_.world_from_camera.conjugate() * world_point;
   for (int axis = 0; axis < 2; ++axis) {
-    const double swell = radius * std::hypot(1.0, slope_[axis]);
-    high_[axis] = std::max(high_[axis], slope_[axis] * p.z() + p[axis] + swell);
-    low_[axis] = std::max(low_[axis], slope_[axis] * p.z() - p[axis] + swell);
+    const double low = low_slope_[axis];
+    const double high = high_slope_[axis];
+    low_[axis] = std::max(low_[axis], low * p.z() - p[axis] + radius * std::hypot(1.0, low));
+    high_[axis] = std::max(high_[axis], high * p.z() + p[axis] + radius * std::hypot(1.0, high));
   }
 }
 
 Camera Framing::fit() const {
   Vec3 eye = Vec3::Zero();
-  double back = -std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 2; ++axis) {
-    eye[axis] = 0.5 * (high_[axis] - low_[axis]);
-    back = std::max(back, 0.5 * (high_[axis] + low_[axis]) / slope_[axis]);
-  }
-  eye.z() = back;
+  eye.z() = (low_ + high_).cwiseQuotient(low_slope_ + high_slope_).maxCoeff();
+  // Where there is room to spare, the middle of what is allowed.
+  eye.head<2>() = 0.5 * (high_ - low_ + eye.z() * (low_slope_ - high_slope_));
   Camera camera = camera_;
   camera.eye = camera.world_from_camera * eye;
   return camera;

@@ -10,7 +10,7 @@ const Rgba kClay = srgb(0xCDBFB0);    // a mesh without material
 const Rgba kMiddle = srgb(0xC9B79F);  // segments: trunk and head
 const Rgba kLeft = srgb(0x6FA3A8);    // the subject's left
 const Rgba kRight = srgb(0xC98263);   // the subject's right
-const Rgba kBone = srgb(0xB9A88F);
+const Rgba kJointBall = srgb(0x5E5348);
 const Rgba kBall = srgb(0xE07A3F);
 const Rgba kBallBand = srgb(0x7A3B1D);
 const Rgba kBox = srgb(0xD9A441);
@@ -124,10 +124,29 @@ const Rgba& side_color(Segment segment) {
   return text.ends_with("_r") ? kRight : kMiddle;
 }
 
+/// Each node in the colour of the segment that it moves with.
+std::vector<Rgba> bone_colors(const Shot& shot) {
+  const Skeleton& skeleton = shot.character->skeleton;
+  std::vector<Rgba> colors(skeleton.nodes.size(), kMiddle);
+  for (const int node : skeleton.order) {
+    if (skeleton.nodes[node].parent >= 0) colors[node] = colors[skeleton.nodes[node].parent];
+    if (shot.humanoid == nullptr) continue;
+    for (int i = 0; i < kSegmentCount; ++i) {
+      const std::vector<int>& chain = shot.humanoid->segments[i].chain;
+      if (std::find(chain.begin(), chain.end(), node) != chain.end())
+        colors[node] = side_color(segment_at(i));
+    }
+  }
+  return colors;
+}
+
 }  // namespace
 
 Figure::Figure(const Shot& shot, bool shapes)
-    : shot_(shot), world_from_file_(file_to_world(shot)), joint_nodes_(joint_nodes(shot)) {
+    : shot_(shot),
+      world_from_file_(file_to_world(shot)),
+      joint_nodes_(joint_nodes(shot)),
+      bone_colors_(bone_colors(shot)) {
   const auto visible = [](const MeshPart& part) { return !part.indices.empty(); };
   mesh_ = std::any_of(shot.character->parts.begin(), shot.character->parts.end(), visible);
   const bool can_show_shapes =
@@ -215,22 +234,37 @@ void Figure::add_shapes(Geometry& geometry, int frame, float alpha) const {
 void Figure::add_bones(Geometry& geometry, const std::vector<Affine>& file_from_node) const {
   const Skeleton& skeleton = shot_.character->skeleton;
   const auto place = [&](int node) { return Vec3(world_from_file_ * file_from_node[node].translation()); };
-  const auto add_bone = [&](const Vec3& from, const Vec3& to) {
+  const auto add_bone = [&](int node, const Vec3& to) {
+    const Vec3 from = place(node);
     const double length = (to - from).norm();
     if (length < 1e-6) return;
-    const double radius = std::clamp(0.11 * length, 0.004, 0.035);
-    add_octahedron(geometry, from, to, radius, kBone);
-    add_capsule(geometry, {Quat::Identity(), from}, 0.55 * radius, 0.0, kRight);
+    const double radius = std::clamp(0.16 * length, 0.008, 0.048);
+    add_octahedron(geometry, from, to, radius, bone_colors_[node]);
+    add_capsule(geometry, {Quat::Identity(), from}, 0.5 * radius, 0.0, kJointBall);
   };
   Surface surface;
   surface.double_sided = true;
   geometry.begin(surface);
-  for (int node = 0; node < skeleton.size(); ++node)
-    if (skeleton.nodes[node].parent >= 0) add_bone(place(skeleton.nodes[node].parent), place(node));
+  for (const int node : skeleton.order)
+    if (skeleton.nodes[node].parent >= 0) add_bone(skeleton.nodes[node].parent, place(node));
+  add_head(geometry, file_from_node);
   if (!shot_.character->bvh) return;
   const auto& ends = shot_.character->bvh->end_site;
   for (int node = 0; node < std::min(skeleton.size(), static_cast<int>(ends.size())); ++node)
-    if (ends[node]) add_bone(place(node), world_from_file_ * (file_from_node[node] * *ends[node]));
+    if (ends[node]) add_bone(node, world_from_file_ * (file_from_node[node] * *ends[node]));
+}
+
+/// Bones show no head: an egg of natural size in its place.
+void Figure::add_head(Geometry& geometry, const std::vector<Affine>& file_from_node) const {
+  if (shot_.humanoid == nullptr) return;
+  const int node = shot_.humanoid->segments[index(Segment::head)].node();
+  if (node < 0) return;
+  const double size = shot_.humanoid->height_m / 1.75;
+  const Affine world_from_node = world_from_file_ * file_from_node[node];
+  const Quat turn =
+      rotation_part(world_from_node.linear()) * shot_.humanoid->node_from_segment[index(Segment::head)];
+  add_capsule(geometry, {turn, world_from_node.translation() + turn * Vec3(0.02, 0.11, 0.0) * size},
+              0.078 * size, 0.075 * size, kMiddle);
 }
 
 void Figure::add_props(Geometry& geometry, int frame) const {

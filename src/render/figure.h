@@ -29,15 +29,17 @@ class Figure {
   Vec3 facing(int frame) const;
 
  private:
-  void add_mesh(Geometry& geometry, const std::vector<Affine>& world_from_node) const;
+  void add_mesh(Geometry& geometry, const std::vector<Affine>& file_from_node) const;
   void add_shapes(Geometry& geometry, int frame, float alpha) const;
-  void add_bones(Geometry& geometry, const std::vector<Affine>& world_from_node) const;
+  void add_bones(Geometry& geometry, const std::vector<Affine>& file_from_node) const;
+  void add_head(Geometry& geometry, const std::vector<Affine>& file_from_node) const;
   void add_props(Geometry& geometry, int frame) const;
   std::vector<Affine> world(int frame) const;
 
   const Shot& shot_;
   Affine world_from_file_;
   std::vector<int> joint_nodes_;
+  std::vector<Rgba> bone_colors_;  // per node
   bool mesh_ = false;
   bool shapes_ = false;
 };

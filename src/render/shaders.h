@@ -42,8 +42,8 @@ uniform sampler2D base_texture;
 uniform sampler2DShadow light_map;
 out vec4 result;
 
-const vec3 kKey = vec3(1.00, 0.95, 0.87) * 0.78;
-const vec3 kSky = vec3(0.86, 0.92, 1.00) * 0.50;
+const vec3 kKey = vec3(1.00, 0.95, 0.87) * 0.92;
+const vec3 kSky = vec3(0.86, 0.92, 1.00) * 0.54;
 const vec3 kGround = vec3(1.00, 0.93, 0.85) * 0.27;
 const vec3 kRim = vec3(0.92, 0.96, 1.00) * 0.35;
 
@@ -70,7 +70,11 @@ void main() {
   float facing = max(dot(n, v), 0.0);
   light += kRim * pow(1.0 - facing, 3.0) * max(dot(n, to_rim) + 0.2, 0.0);
   float highlight = pow(max(dot(n, normalize(v + to_key)), 0.0), 36.0) * gloss * shadow;
-  result = vec4(albedo.rgb * light + kKey * highlight, albedo.a);
+  vec3 color = albedo.rgb * light + kKey * highlight;
+  // A soft shoulder above 0.7, so that bright cloth keeps its folds.
+  vec3 over = max(color - 0.7, 0.0);
+  color = min(color, 0.7) + 0.3 * (1.0 - exp(-over / 0.3));
+  result = vec4(color, albedo.a);
 }
 )";
 

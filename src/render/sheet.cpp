@@ -109,6 +109,7 @@ class Layout {
   double size(double pixels) const { return pixels * zoom_; }
   int margin() const { return scaled(36); }
   int gap() const { return scaled(14); }
+  int label_height() const { return scaled(38); }
   int note_line() const { return scaled(22); }
   int width() const { return 2 * margin() + columns_ * options_.cell_width + (columns_ - 1) * gap(); }
   int height() const { return grid_top() + rows_ * (options_.cell_height + gap()) + scaled(44); }
@@ -142,13 +143,14 @@ void draw_header(Picture& page, const Layout& layout, const Fonts& fonts, const 
   }
 }
 
-void draw_footer(Picture& page, const Layout& layout, const Fonts& fonts, const Shot& shot) {
+void draw_footer(Picture& page, const Layout& layout, const Fonts& fonts, const Shot& shot, bool follows) {
   const double size = layout.size(13);
   const int baseline = layout.footer_baseline();
   const int square = layout.scaled(12);
   const Box icon{layout.margin(), baseline - square + layout.scaled(1), square, square};
   outline(page, icon, 0.0, kSoftInk);
-  fonts.regular.draw(page, layout.margin() + square + layout.scaled(8), baseline, "grid 1 m", size, kSoftInk);
+  fonts.regular.draw(page, layout.margin() + square + layout.scaled(8), baseline,
+                     follows ? "grid 1 m  ·  the camera follows" : "grid 1 m", size, kSoftInk);
   const std::size_t frames = shot.clip->frames.size();
   const std::string figures = fmt::format("{:.2f} s  ·  {} frame{} at {:.4g} fps", shot.clip->duration_s(),
                                           frames, frames == 1 ? "" : "s", shot.clip->fps);
@@ -201,16 +203,18 @@ Result<Picture> render_sheet(const Shot& shot, const SheetOptions& options) {
   auto painter = Painter::make(options.cell_width, options.cell_height, decode_textures(*shot.character));
   if (!painter) return painter.error();
 
-  const Stage stage =
-      set_stage(figure, shot, joints, moments, static_cast<double>(options.cell_width) / options.cell_height);
+  const Staging staging =
+      set_stage(figure, shot, joints, moments, static_cast<double>(options.cell_width) / options.cell_height,
+                static_cast<double>(layout.label_height()) / options.cell_height);
   Picture page = blank(layout.width(), layout.height(), kPage);
   draw_header(page, layout, *fonts, shot);
-  draw_footer(page, layout, *fonts, shot);
+  draw_footer(page, layout, *fonts, shot, staging.follows());
   for (std::size_t i = 0; i < moments.size(); ++i) {
     const int frame = moments[i].frame;
     const Box cell = layout.cell(static_cast<int>(i));
     const double radius = layout.size(8);
-    paste(page, (*painter)->draw(cell_geometry(figure, shot, frame), stage), cell.x, cell.y, radius);
+    paste(page, (*painter)->draw(cell_geometry(figure, shot, frame), staging.at(frame)), cell.x, cell.y,
+          radius);
     outline(page, cell, radius, kCellBorder);
     draw_label(page, layout, *fonts, cell, frame / shot.clip->fps, moments[i].phase);
   }

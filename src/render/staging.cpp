@@ -7,7 +7,8 @@ namespace ukemi {
 namespace {
 
 constexpr double kElevation = radians(14.0);
-constexpr double kMargin = 0.07;
+constexpr double kMargin = 0.07;         // of half the picture
+constexpr double kFollow = 1.7;          // the camera follows where it would else stand this much farther off
 constexpr double kFlesh_m = 0.07;        // about a joint, for frames whose skin is not looked at
 constexpr double kFloorSearch_m = 0.25;  // a lowest point this near to y = 0 stands on y = 0
 constexpr double kArrow_m = 0.42;
@@ -85,33 +86,73 @@ void add_blow_arrow(Geometry& geometry, const Shot& shot, int frame) {
             kArrowColor);
 }
 
-Stage set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
-                const std::vector<Moment>& moments, double aspect) {
-  Stage stage;
-  stage.camera.aspect = aspect;
-  const Vec3 back = side_to_look_from(main_direction(shot, joints), figure.facing(0));
-  stage.camera.world_from_camera = look(std::atan2(back.x(), back.z()), kElevation);
+Stage Staging::at(int frame) const {
+  Stage moved = stage;
+  if (!follows()) return moved;
+  moved.camera.eye += shifts[frame];
+  moved.focus += shifts[frame];
+  return moved;
+}
 
-  Framing framing(stage.camera, kMargin);
-  Eigen::AlignedBox3d all;
-  for (const std::vector<Vec3>& frame : joints)
-    for (const Vec3& joint : frame) {
-      framing.add(joint, kFlesh_m);
-      all.extend(joint);
-    }
+namespace {
+
+/// Everything that the camera must hold, seen from a stage that moves by `shifts` (or not, when empty).
+template <typename Visit>
+void each_point(const Figure& figure, const Shot& shot, const JointPaths& joints,
+                const std::vector<Moment>& moments, const std::vector<Vec3>& shifts, Visit&& visit) {
+  const auto shift = [&](std::size_t frame) { return shifts.empty() ? Vec3(Vec3::Zero()) : shifts[frame]; };
+  for (std::size_t frame = 0; frame < joints.size(); ++frame)
+    for (const Vec3& joint : joints[frame]) visit(Vec3(joint - shift(frame)), kFlesh_m);
   for (const Moment& moment : moments) {
     Geometry seen = figure.body(moment.frame);
     if (shows_arrow(shot, moment.frame)) add_blow_arrow(seen, shot, moment.frame);
-    for (const Vertex& vertex : seen.vertices) {
-      framing.add(vertex.position.cast<double>());
-      all.extend(vertex.position.cast<double>());
-    }
+    for (const Vertex& vertex : seen.vertices)
+      visit(Vec3(vertex.position.cast<double>() - shift(moment.frame)), 0.0);
   }
-  stage.camera = framing.fit();
+}
+
+/// Way of the figure's middle on the floor since the first frame.
+std::vector<Vec3> floor_ways(const JointPaths& joints) {
+  std::vector<Vec3> ways;
+  for (const std::vector<Vec3>& frame : joints) ways.push_back(flat(mean(frame) - mean(joints.front())));
+  return ways;
+}
+
+}  // namespace
+
+Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
+                  const std::vector<Moment>& moments, double aspect, double top) {
+  Camera camera;
+  camera.aspect = aspect;
+  const Vec3 back = side_to_look_from(main_direction(shot, joints), figure.facing(0));
+  camera.world_from_camera = look(std::atan2(back.x(), back.z()), kElevation);
+
+  const auto frame_for = [&](const std::vector<Vec3>& shifts, Eigen::AlignedBox3d& all) {
+    Framing framing(camera, {kMargin, kMargin, kMargin, std::max(kMargin, 2.0 * top)});
+    each_point(figure, shot, joints, moments, shifts, [&](const Vec3& point, double radius) {
+      framing.add(point, radius);
+      all.extend(point);
+    });
+    return framing.fit();
+  };
+  const std::vector<Vec3> ways = floor_ways(joints);
+  Eigen::AlignedBox3d all;
+  Eigen::AlignedBox3d following;
+  const Camera still = frame_for({}, all);
+  const Camera moving = frame_for(ways, following);
+  const auto distance = [&](const Camera& from, const Eigen::AlignedBox3d& box) {
+    return (from.eye - box.center()).dot(from.world_from_camera * Vec3::UnitZ());
+  };
+  Staging staging;
+  const bool follow = distance(still, all) > kFollow * distance(moving, following);
+  if (follow) staging.shifts = ways;
+  const Eigen::AlignedBox3d& box = follow ? following : all;
+  Stage& stage = staging.stage;
+  stage.camera = follow ? moving : still;
   stage.floor_y = floor_height(all.min().y());
-  stage.focus = {all.center().x(), stage.floor_y, all.center().z()};
-  stage.reach = 0.5 * flat(all.sizes()).norm() + 1.0;
-  return stage;
+  stage.focus = {box.center().x(), stage.floor_y, box.center().z()};
+  stage.reach = 0.5 * flat(box.sizes()).norm() + 1.0;
+  return staging;
 }
 
 }  // namespace ukemi

@@ -12,10 +12,21 @@ namespace ukemi {
 /// Places of the joints in every frame, metres.
 using JointPaths = std::vector<std::vector<Vec3>>;
 
-/// One stage for all moments: the camera looks across the blow (or, without one, across the way), turned
-/// towards the figure's front, and holds all joints of all frames and all that the moments show.
-Stage set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
-                const std::vector<Moment>& moments, double aspect);
+/// The stage of a motion, and how it moves along where the figure goes far.
+struct Staging {
+  Stage stage;
+  std::vector<Vec3> shifts;  // per frame, horizontal, metres; empty: the camera stands still
+
+  bool follows() const { return !shifts.empty(); }
+  Stage at(int frame) const;
+};
+
+/// One view for all moments: the camera looks across the blow (or, without one, across the way), turned
+/// towards the figure's front, and holds all joints of all frames and all that the moments show. It stands
+/// still unless the figure would become much smaller than with a camera that follows it. Top: share of the
+/// picture's height that is kept free for labels.
+Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
+                  const std::vector<Moment>& moments, double aspect, double top);
 
 /// The arrow of the blow: it ends at the impact point, or behind the ball that touches it there.
 /// Shown shortly before and after the mark "impact" only.

@@ -36,26 +36,26 @@ TEST(Framing, holds_every_point_and_touches_the_margin) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(-2.0, 2.0);
   for (const double aspect : {0.4, 0.9, 2.5}) {
-    Framing framing(some_camera(aspect), 0.1);
+    Framing framing(some_camera(aspect), {0.1, 0.1, 0.1, 0.3});
     std::vector<Vec3> points;
     for (int i = 0; i < 200; ++i) {
       points.emplace_back(place(random), 0.5 * place(random), place(random));
       framing.add(points.back());
     }
     const Camera camera = framing.fit();
-    double farthest = 0.0;
+    double closest = 1.0;  // to a margin
     for (const Vec3& point : points) {
       const Vec3 p = camera.project(point);
       ASSERT_GT(p.z(), 0.0);
-      farthest = std::max({farthest, std::abs(p.x()), std::abs(p.y())});
+      closest = std::min({closest, 0.9 - std::abs(p.x()), p.y() + 0.9, 0.7 - p.y()});
     }
-    EXPECT_NEAR(farthest, 0.9, 1e-9);
+    EXPECT_NEAR(closest, 0.0, 1e-9);
   }
 }
 
 TEST(Framing, of_a_sphere_touches_its_outline) {
   Camera camera;  // looks along -z, aspect 1
-  Framing framing(camera, 0.0);
+  Framing framing(camera, {});
   framing.add(Vec3::Zero(), 0.5);
   // The cone of half angle a about a sphere of radius r has its tip at r / sin a.
   EXPECT_NEAR(framing.fit().eye.z(), 0.5 / std::sin(0.5 * camera.vertical_fov), 1e-12);

@@ -123,11 +123,13 @@ TEST(Sheet, camera_holds_all_joints_of_all_frames) {
   JointPaths joints;
   for (int frame = 0; frame < 46; ++frame) joints.push_back(figure.joints(frame));
   for (const double aspect : {0.5, 0.9, 2.0}) {
-    const Stage stage = set_stage(figure, scene.shot, joints, choose_moments(scene.clip, joints, 12), aspect);
+    const Staging staging =
+        set_stage(figure, scene.shot, joints, choose_moments(scene.clip, joints, 12), aspect, 0.1);
+    EXPECT_FALSE(staging.follows());
     double widest = 0.0;
     for (int frame = 0; frame < 46; ++frame)
       for (const Vec3& joint : joints[frame]) {
-        const Vec3 p = stage.camera.project(joint);
+        const Vec3 p = staging.at(frame).camera.project(joint);
         ASSERT_GT(p.z(), 0.0);
         widest = std::max({widest, std::abs(p.x()), std::abs(p.y())});
       }
@@ -136,13 +138,40 @@ TEST(Sheet, camera_holds_all_joints_of_all_frames) {
   }
 }
 
+TEST(Sheet, camera_follows_a_figure_that_goes_far) {
+  Scene scene;
+  scene.shot.impact_direction.setZero();
+  for (std::size_t frame = 0; frame < scene.clip.frames.size(); ++frame)
+    scene.clip.frames[frame][0].translation.x() += 0.3 * static_cast<double>(frame);
+  const Figure figure(scene.shot, false);
+  JointPaths joints;
+  for (int frame = 0; frame < 46; ++frame) joints.push_back(figure.joints(frame));
+  const Staging staging =
+      set_stage(figure, scene.shot, joints, choose_moments(scene.clip, joints, 12), 0.9, 0.1);
+  EXPECT_TRUE(staging.follows());
+  double tallest = 0.0;
+  for (int frame = 0; frame < 46; ++frame) {
+    const Camera camera = staging.at(frame).camera;
+    double low = 1.0;
+    double high = -1.0;
+    for (const Vec3& joint : joints[frame]) {
+      const Vec3 p = camera.project(joint);
+      ASSERT_LT(std::max(std::abs(p.x()), std::abs(p.y())), 0.95);
+      low = std::min(low, p.y());
+      high = std::max(high, p.y());
+    }
+    tallest = std::max(tallest, high - low);
+  }
+  EXPECT_GT(tallest, 0.8) << "of 2: the standing figure is large";
+}
+
 TEST(Sheet, is_seen_across_the_blow_running_from_left_to_right) {
   Scene scene;
   const Figure figure(scene.shot, false);
   const JointPaths joints{figure.joints(0)};
   for (const Vec3& blow : {Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(-0.6, 0.0, 0.8)}) {
     scene.shot.impact_direction = blow;
-    const Camera camera = set_stage(figure, scene.shot, joints, {{0, ""}}, 1.0).camera;
+    const Camera camera = set_stage(figure, scene.shot, joints, {{0, ""}}, 1.0, 0.1).stage.camera;
     EXPECT_GT(blow.dot(camera.world_from_camera * Vec3::UnitX()), 0.99);
   }
 }
