@@ -238,7 +238,7 @@ void Figure::add_bones(Geometry& geometry, const std::vector<Affine>& file_from_
     const Vec3 from = place(node);
     const double length = (to - from).norm();
     if (length < 1e-6) return;
-    const double radius = std::clamp(0.16 * length, 0.008, 0.048);
+    const double radius = std::clamp(0.16 * length, std::min(0.022, 0.35 * length), 0.048);
     add_octahedron(geometry, from, to, radius, bone_colors_[node]);
     add_capsule(geometry, {Quat::Identity(), from}, 0.5 * radius, 0.0, kJointBall);
   };

@@ -126,8 +126,8 @@ void add_octahedron(Geometry& geometry, const Vec3& from, const Vec3& to, double
 }
 
 void add_arrow(Geometry& geometry, const Vec3& tip, const Vec3& direction, double length, const Rgba& color) {
-  const double shaft = 0.032 * length;
-  const double head = 0.095 * length;
+  const double shaft = 0.036 * length;
+  const double head = 0.11 * length;
   const double neck = -0.34 * length;
   const double slope = std::atan2(head, -neck);
   const double c = std::cos(slope);
