@@ -27,6 +27,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kKnownExtensions = "use a .glb, .gltf, .vrm, .fbx, .dae or .bvh file";
 constexpr int kFloat = 5126;
 constexpr int kUint16 = 5123;
 constexpr int kUint32 = 5125;
@@ -515,12 +516,13 @@ void keep_only(Assimp::Importer& importer, const Assimp::BaseImporter* kept) {
 Result<Converted> convert_with_assimp(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
                                       Diagnostics& diagnostics) {
   const std::string extension = path.extension().string();
-  const std::string hint = extension.empty() ? "" : extension.substr(1);
+  if (extension.size() < 2) return load::input_error(path, 0, "has no extension", kKnownExtensions);
+  const std::string hint = extension.substr(1);
   Assimp::Importer importer;
-  const Assimp::BaseImporter* reader = hint.empty() ? nullptr : importer.GetImporter(hint.c_str());
+  const Assimp::BaseImporter* reader = importer.GetImporter(hint.c_str());
   if (reader == nullptr)
     return load::input_error(path, 0, fmt::format("extension {} is not known", load::quoted(extension)),
-                             "use a .glb, .gltf, .vrm, .fbx, .dae or .bvh file");
+                             kKnownExtensions);
   keep_only(importer, reader);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);

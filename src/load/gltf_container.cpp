@@ -78,18 +78,19 @@ int hex_digit(char c) {
   return -1;
 }
 
-std::string percent_decoded(const JsonView& place, std::string_view text) {
+/// Escapes that are malformed stand for themselves: some exporters write names as they are.
+std::string percent_decoded(std::string_view text) {
   std::string decoded;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '%') {
+    const bool escape = text[i] == '%' && i + 2 < text.size();
+    const int high = escape ? hex_digit(text[i + 1]) : -1;
+    const int low = escape ? hex_digit(text[i + 2]) : -1;
+    if (high >= 0 && low >= 0) {
+      decoded += static_cast<char>(high * 16 + low);
+      i += 2;
+    } else {
       decoded += text[i];
-      continue;
     }
-    const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
-    const int low = high >= 0 ? hex_digit(text[i + 2]) : -1;
-    if (low < 0) place.refuse(fmt::format("has a malformed escape in {}", load::quoted(text)));
-    decoded += static_cast<char>(high * 16 + low);
-    i += 2;
   }
   return decoded;
 }
@@ -133,8 +134,8 @@ std::vector<std::uint8_t> decode_data_uri(const JsonView& place, std::string_vie
   const std::string_view body = uri.substr(comma + 1);
   if (head.ends_with(";base64"))
     return body.find('%') == body.npos ? base64_decoded(place, body)
-                                       : base64_decoded(place, percent_decoded(place, body));
-  const std::string plain = percent_decoded(place, body);
+                                       : base64_decoded(place, percent_decoded(body));
+  const std::string plain = percent_decoded(body);
   return {plain.begin(), plain.end()};
 }
 
@@ -145,7 +146,7 @@ bool has_scheme(std::string_view uri) {
 
 /// Refuses everything but a relative path that stays below the document's folder.
 std::filesystem::path safe_relative_path(const JsonView& place, const std::string& uri) {
-  const std::string decoded = percent_decoded(place, uri);
+  const std::string decoded = percent_decoded(uri);
   const std::filesystem::path relative(decoded);
   bool inside = !decoded.empty() && decoded.find_first_of(std::string("\\\0", 2)) == decoded.npos &&
                 !has_scheme(decoded) && relative.is_relative();
