@@ -1,0 +1,27 @@
+// The pose from which the anatomical frames are read.
+#pragma once
+
+#include <vector>
+
+#include "base/character.h"
+#include "humanoid/humanoid.h"
+
+namespace ukemi {
+
+struct Reference {
+  Pose pose;
+  Vec3 up;                // file axes
+  bool is_frame = false;  // a moment of a motion, not a pose that somebody chose
+};
+
+/// A motion without a character: its clip is the only source of the person's posture.
+bool only_motion(const Character& character);
+
+/// A motion's zero pose or best frame; a character's rest pose, its bind pose where that is cleaner, else the
+/// best frame of its first animation. Turned upright where it leans against every axis of the file.
+Reference find_reference(const Character& character, const Humanoid& humanoid);
+
+/// Times of an animation's frames, at most about `at_most` of them.
+std::vector<double> sample_times(const Animation& animation, int at_most);
+
+}  // namespace ukemi
