@@ -44,25 +44,24 @@ PerSegment<Quat> relative_rotations(const Humanoid& humanoid, const Figure& figu
   return relative;
 }
 
-Quat without_turn(const Quat& q) {
-  const double half = 0.5 * twist_angle(q, Vec3::UnitY());
-  return q * Quat(std::cos(half), 0.0, -std::sin(half), 0.0);
-}
+Quat turn(double angle) { return Quat(std::cos(0.5 * angle), 0.0, std::sin(0.5 * angle), 0.0); }
+Quat without_turn(const Quat& q) { return q * turn(-twist_angle(q, Vec3::UnitY())); }
 
 struct Means {
-  PerSegment<MeanRotation> upright, all;
+  PerSegment<MeanRotation> upright;
+  PerSegment<MeanRotation> wrist;  // hands against forearms that have taken the twist over
 };
 
 Means measure(const Character& character, const Reference& reference, const Humanoid& humanoid) {
   Means means;
   for (const double t : sample_times(character.animations[0], kMostFrames)) {
     const Figure figure(character, humanoid, sample(character.skeleton, character.animations[0], t));
-    const bool upright = is_upright(figure, reference.up);
     const PerSegment<Quat> relative = relative_rotations(humanoid, figure);
-    for (int s = 1; s < kSegmentCount; ++s) {
-      means.all[s].add(relative[s]);
-      if (upright) means.upright[s].add(relative[s]);
-    }
+    for (const Segment hand : kHand)
+      means.wrist[index(hand)].add(turn(-twist_angle(relative[index(hand)], Vec3::UnitY())) *
+                                   relative[index(hand)]);
+    if (!is_upright(figure, reference.up)) continue;
+    for (int s = 1; s < kSegmentCount; ++s) means.upright[s].add(relative[s]);
   }
   return means;
 }
@@ -85,29 +84,82 @@ void centre(const Means& means, Humanoid& humanoid) {
   if (upright >= kUprightForClavicles)
     for (const Segment s : {Segment::clavicle_l, Segment::clavicle_r})
       apply(s, means.upright[index(s)].mean());
-  for (const Segment s : {Segment::hand_l, Segment::hand_r}) apply(s, means.all[index(s)].mean());
+  for (const Segment s : {Segment::hand_l, Segment::hand_r}) apply(s, means.wrist[index(s)].mean());
 }
 
-/// Frame of a foot that lies flat: y up, x towards the toes.
+/// Mean axis of a hinge in its two bones' nodes, from frames bent by more than 30 degrees.
+struct HingeAxis {
+  Vec3 upper = Vec3::Zero(), lower = Vec3::Zero();
+  int count = 0;
+};
+
+HingeAxis measure_hinge(const Character& character, const Humanoid& humanoid, Segment upper, Segment lower,
+                        Segment end) {
+  HingeAxis axis;
+  const int upper_node = humanoid.carrier_node(upper), lower_node = humanoid.carrier_node(lower);
+  for (const double t : sample_times(character.animations[0], kMostFrames)) {
+    const Figure f(character, humanoid, sample(character.skeleton, character.animations[0], t));
+    const Vec3 n =
+        f.link(upper, lower).normalized().cross(f.link(lower, end).normalized());  // length sin(bend)
+    if (angle(f.link(upper, lower), f.link(lower, end)) < radians(30)) continue;
+    axis.upper += rotation_part(f.world[upper_node].linear()).conjugate() * n;
+    axis.lower += rotation_part(f.world[lower_node].linear()).conjugate() * n;
+    ++axis.count;
+  }
+  return axis;
+}
+
+/// Rolls a segment's frame about its y axis until z points along `axis` (node coordinates).
+void roll_to(Humanoid& humanoid, Segment s, const Vec3& axis) {
+  Quat& frame = humanoid.node_from_segment[index(s)];
+  const Vec3 y = frame * Vec3::UnitY();
+  const Vec3 z = axis - axis.dot(y) * y;
+  if (z.norm() < 0.3 * axis.norm()) return;
+  Mat3 m;
+  m << y.cross(z.normalized()), y, z.normalized();
+  frame = Quat(m);
+}
+
+void read_hinges(const Character& character, Humanoid& humanoid) {
+  constexpr int kFrames = 10;
+  for (int side = 0; side < 2; ++side) {
+    const HingeAxis elbow = measure_hinge(character, humanoid, kUpperArm[side], kForearm[side], kHand[side]);
+    if (elbow.count >= kFrames) roll_to(humanoid, kUpperArm[side], elbow.upper);
+    const HingeAxis knee = measure_hinge(character, humanoid, kThigh[side], kShank[side], kFoot[side]);
+    if (knee.count < kFrames) continue;
+    roll_to(humanoid, kThigh[side], -knee.upper);
+    roll_to(humanoid, kShank[side], -knee.lower);
+  }
+}
+
+struct FootReading {
+  double height;
+  Quat node_from_foot;  // as if the foot lay flat: y up, x towards the toes
+};
+
+/// Mean over the lowest tenth of the frames, where feet lie flat.
 void read_feet_where_flat(const Character& character, const Reference& reference, Humanoid& humanoid) {
   for (int side = 0; side < 2; ++side) {
     const int foot = humanoid.segments[index(kFoot[side])].node();
     const int toe = humanoid.toes[side];
     if (foot < 0 || toe < 0) continue;
-    double lowest = 1e300;
+    std::vector<FootReading> readings;
     for (const double t : sample_times(character.animations[0], kMostFrames)) {
       const auto world =
           world_transforms(character.skeleton, sample(character.skeleton, character.animations[0], t));
       const Vec3 ankle = world[foot].translation(), tip = world[toe].translation();
-      const double height = ankle.dot(reference.up) + tip.dot(reference.up);
       const Vec3 forward = (tip - ankle) - (tip - ankle).dot(reference.up) * reference.up;
-      if (height >= lowest || forward.norm() < 0.3 * (tip - ankle).norm()) continue;
-      lowest = height;
+      if (forward.norm() < 0.8 * (tip - ankle).norm()) continue;  // on tiptoe
       Mat3 frame;
       frame << forward.normalized(), reference.up, forward.normalized().cross(reference.up);
-      humanoid.node_from_segment[index(kFoot[side])] =
-          (rotation_part(world[foot].linear()).conjugate() * Quat(frame)).normalized();
+      readings.push_back(
+          {(ankle + tip).dot(reference.up), rotation_part(world[foot].linear()).conjugate() * Quat(frame)});
     }
+    std::stable_sort(readings.begin(), readings.end(),
+                     [](const FootReading& a, const FootReading& b) { return a.height < b.height; });
+    MeanRotation mean;
+    for (std::size_t i = 0; i < (readings.size() + 9) / 10; ++i) mean.add(readings[i].node_from_foot);
+    if (mean.count > 0) humanoid.node_from_segment[index(kFoot[side])] = mean.mean();
   }
 }
 
@@ -116,6 +168,7 @@ void read_feet_where_flat(const Character& character, const Reference& reference
 void refine_from_motion(const Character& character, const Reference& reference, Humanoid& humanoid) {
   if (!only_motion(character)) return;
   if (reference.is_frame) read_feet_where_flat(character, reference, humanoid);
+  read_hinges(character, humanoid);
   centre(measure(character, reference, humanoid), humanoid);
 }
 

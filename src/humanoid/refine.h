@@ -12,9 +12,10 @@ namespace ukemi {
 /// say how
 ///    the person holds abdomen, chest and head (pitch and side bend) and clavicles when standing: the mean
 ///    becomes neutral, with at least 80 such frames (clavicles 15).
-/// 2. The mean rotation of the hands against the forearms becomes neutral: marker sets put hands up to 45
+/// 2. Elbows and knees bent by more than 30 degrees show the axes of these hinges (at least 10 frames).
+/// 3. The mean rotation of the hands against the forearms becomes neutral: marker sets put hands up to 45
 /// degrees off.
-/// 3. Where the reference is a moment of the motion, each foot is read where it lies lowest and flattest.
+/// 4. Where the reference is a moment of the motion, each foot is read where it lies lowest and flattest.
 void refine_from_motion(const Character& character, const Reference& reference, Humanoid& humanoid);
 
 }  // namespace ukemi

@@ -1,0 +1,179 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "humanoid/figures.h"
+#include "humanoid/humanoid.h"
+#include "restrict/range_of_motion.h"
+
+namespace ukemi {
+namespace {
+
+using testing::figure;
+using testing::FigureOptions;
+
+struct Standing {
+  Character character;
+  Humanoid humanoid;
+  Pose pose;
+  BodyPose body;
+
+  Standing(Character c, StartPose kind) : character(std::move(c)) {
+    Diagnostics diagnostics;
+    const auto result = map_humanoid(character, {}, diagnostics);
+    EXPECT_TRUE(result);
+    humanoid = *result;
+    pose = start_pose(character, humanoid, kind);
+    body = canonical_segments_of(character.skeleton, humanoid, pose);
+  }
+  const Rigid& at(Segment s) const { return body[index(s)]; }
+  Quat relative(Segment parent, Segment child) const {
+    return at(parent).rotation.conjugate() * at(child).rotation;
+  }
+};
+
+std::vector<FigureOptions> all_figures() {
+  std::vector<FigureOptions> result;
+  for (const double elevation : {90.0, 45.0, 8.0}) {
+    result.push_back({.arm_elevation_deg = elevation});
+    result.push_back({.arm_elevation_deg = elevation,
+                      .unit = 100.0,
+                      .spine_bones = 1,
+                      .clavicles = false,
+                      .hands = false,
+                      .toes = false});
+    result.push_back(
+        {.arm_elevation_deg = elevation, .armature_scale = 100.0, .spine_bones = 5, .twisted_nodes = true});
+  }
+  return result;
+}
+
+TEST(StartPose, StandAndGuardLieInsideTheHumanRangeWithThreeDegreesToSpare) {
+  const auto range = load_range_of_motion("human");
+  ASSERT_TRUE(range) << range.error().message();
+  int looked_at = 0;
+  for (const FigureOptions& options : all_figures())
+    for (const StartPose kind : {StartPose::stand, StartPose::guard}) {
+      const Standing standing(figure(options), kind);
+      PerSegment<Quat> rotations;
+      for (int s = 0; s < kSegmentCount; ++s) rotations[s] = standing.body[s].rotation;
+      const PerJoint<SwingTwist> charts = charts_of(*range, rotations);
+      for (int j = 0; j < kJointCount; ++j) {
+        const JointRange& joint = range->joints[j];
+        EXPECT_LT(polygon_distance(joint.polygon, charts[j].swing), radians(-3)) << name(joint_at(j));
+        EXPECT_GT(charts[j].twist, joint.twist_min + radians(3)) << name(joint_at(j));
+        EXPECT_LT(charts[j].twist, joint.twist_max - radians(3)) << name(joint_at(j));
+        ++looked_at;
+      }
+    }
+  EXPECT_EQ(looked_at, 9 * 2 * kJointCount);
+}
+
+TEST(StartPose, StandsOnFlatFeetUnderTheHips) {
+  for (const FigureOptions& options : all_figures()) {
+    const Standing standing(figure(options), StartPose::stand);
+    for (const Segment foot : {Segment::foot_l, Segment::foot_r}) {
+      EXPECT_LT((standing.at(foot).rotation * Vec3::UnitY() - Vec3::UnitY()).norm(), 0.02);
+      EXPECT_NEAR(standing.at(foot).translation.z(), standing.at(Segment::pelvis).translation.z(), 0.02);
+    }
+    EXPECT_NEAR(standing.at(Segment::foot_l).translation.y(), standing.at(Segment::foot_r).translation.y(),
+                1e-9);
+    const double width =
+        (standing.at(Segment::foot_l).translation - standing.at(Segment::foot_r).translation).norm();
+    EXPECT_GT(width, 0.18);
+    EXPECT_LT(width, 0.24);
+    // Knees are soft, not locked.
+    for (const auto& [thigh, shank] :
+         {std::pair(Segment::thigh_l, Segment::shank_l), {Segment::thigh_r, Segment::shank_r}}) {
+      const double bend = std::acos(
+          (standing.at(thigh).rotation * Vec3::UnitY()).dot(standing.at(shank).rotation * Vec3::UnitY()));
+      EXPECT_GT(bend, radians(3));
+      EXPECT_LT(bend, radians(8));
+    }
+  }
+}
+
+TEST(StartPose, StandIsMirrorSymmetricAndFacesAsTheReference) {
+  const Standing standing(figure(), StartPose::stand);
+  const auto mirrored = [](const Quat& q) { return Quat(q.w(), -q.x(), -q.y(), q.z()); };
+  for (int s = 0; s < kSegmentCount; ++s) {
+    const Segment other = mirror_of(segment_at(s));
+    const Quat here = standing.relative(Segment::pelvis, segment_at(s)),
+               there = standing.relative(Segment::pelvis, other);
+    EXPECT_LT(angle_between(mirrored(here), there), 1e-9) << name(segment_at(s));
+  }
+  EXPECT_LT((standing.at(Segment::head).rotation * Vec3::UnitX() - Vec3::UnitZ()).norm(), 1e-9);
+}
+
+TEST(StartPose, ArmsHangWithBentElbows) {
+  const Standing standing(figure(), StartPose::stand);
+  const Vec3 arm = standing.at(Segment::upperarm_r).rotation * -Vec3::UnitY();
+  EXPECT_NEAR(degrees(std::asin(-arm.x())), 9.0, 1.0);  // facing +z, the right is -x
+  const double elbow =
+      angle_between(standing.at(Segment::upperarm_r).rotation, standing.at(Segment::forearm_r).rotation);
+  EXPECT_GT(elbow, radians(12));
+  EXPECT_LT(elbow, radians(20));
+}
+
+TEST(StartPose, GuardHoldsTheFistsHighAndTheLeftFootForward) {
+  const Standing guard(figure(), StartPose::guard);
+  const double chin = guard.at(Segment::head).translation.y();
+  for (const Segment hand : {Segment::hand_l, Segment::hand_r}) {
+    EXPECT_GT(guard.at(hand).translation.y(), chin - 0.25);
+    EXPECT_LT(guard.at(hand).translation.y(), chin + 0.15);
+    EXPECT_GT(guard.at(hand).translation.z(), guard.at(Segment::chest).translation.z() + 0.15);
+  }
+  EXPECT_GT(guard.at(Segment::foot_l).translation.z() - guard.at(Segment::foot_r).translation.z(), 0.25);
+  for (const auto& [upper, lower] :
+       {std::pair(Segment::upperarm_l, Segment::forearm_l), {Segment::upperarm_r, Segment::forearm_r}}) {
+    const double bend =
+        std::acos((guard.at(upper).rotation * Vec3::UnitY()).dot(guard.at(lower).rotation * Vec3::UnitY()));
+    EXPECT_NEAR(degrees(bend), 115.0, 6.0);
+  }
+}
+
+TEST(StartPose, LeavesFingersAsTheyAre) {
+  const Standing standing(figure({.twisted_nodes = true}), StartPose::guard);
+  const int finger = standing.character.skeleton.find("mixamorig:RightHandMiddle1");
+  EXPECT_EQ(standing.pose[finger].rotation.coeffs(),
+            standing.character.skeleton.nodes[finger].rest.rotation.coeffs());
+}
+
+/// A skin of one sole vertex 2 cm below each toe joint and one on top of the head.
+void add_skin(Character& character) {
+  const Skeleton& skeleton = character.skeleton;
+  const std::vector<Affine> world = world_transforms(skeleton, rest_pose(skeleton));
+  Skin skin;
+  MeshPart part;
+  part.node = 0;
+  part.skin = 0;
+  const auto add = [&](const char* name, const Vec3& offset) {
+    const int node = skeleton.find(name);
+    skin.joints.push_back(node);
+    skin.inverse_bind.push_back(world[node].inverse());
+    part.positions.push_back((world[node].translation() + offset).cast<float>());
+    part.joints.push_back({static_cast<std::uint16_t>(skin.joints.size() - 1), 0, 0, 0});
+    part.weights.push_back({1, 0, 0, 0});
+  };
+  add("mixamorig:LeftToeBase", Vec3(0, -0.02, 0));
+  add("mixamorig:RightToeBase", Vec3(0, -0.02, 0));
+  add("mixamorig:HeadTop_End", Vec3::Zero());
+  character.skins.push_back(skin);
+  character.parts.push_back(part);
+}
+
+TEST(StartPose, TheLowestSolePointOfTheSkinStandsOnTheFloor) {
+  for (const StartPose kind : {StartPose::rest, StartPose::stand, StartPose::guard}) {
+    Character character = figure();
+    add_skin(character);
+    const Standing standing(character, kind);
+    const std::vector<Affine> world = world_transforms(standing.character.skeleton, standing.pose);
+    double lowest = 1e300;
+    for (const char* name : {"mixamorig:LeftToeBase", "mixamorig:RightToeBase"})
+      lowest = std::min(lowest, (world[standing.character.skeleton.find(name)] * Vec3(0, -0.02, 0)).y());
+    EXPECT_NEAR(lowest, 0.0, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace ukemi
