@@ -89,6 +89,9 @@ void make_clip(const Character& character, BakeOutcome& outcome) {
 Status prepare(const Character& character, const BakeSettings& settings, BakeOutcome& outcome,
                Diagnostics& diagnostics) {
   outcome.reaction = reaction_name(settings);
+  auto range = load_range_of_motion(settings.region);
+  if (!range) return range.error();
+  outcome.range = std::move(*range);
   auto humanoid = map_humanoid(character, settings.humanoid, diagnostics);
   if (!humanoid) return humanoid.error();
   outcome.humanoid = std::move(*humanoid);
@@ -99,9 +102,6 @@ Status prepare(const Character& character, const BakeSettings& settings, BakeOut
                          BodyOptions{settings.mass_kg.value_or(0.0), settings.sex}, diagnostics);
   if (!body) return body.error();
   outcome.body = std::move(*body);
-  auto range = load_range_of_motion(settings.region);
-  if (!range) return range.error();
-  outcome.range = std::move(*range);
   widen_for_start(outcome, diagnostics);
   auto scene = scene_of(settings, outcome.start.segments[index(Segment::pelvis)].rotation);
   if (!scene) return scene.error();

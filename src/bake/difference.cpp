@@ -19,6 +19,8 @@ using Json = nlohmann::ordered_json;
 constexpr double kMinRate = 30.0;
 constexpr double kMaxRate = 240.0;
 constexpr std::size_t kWorstShown = 5;
+constexpr double kSameAxes = 1e-3;    // rad
+constexpr double kSameOffset = 1e-3;  // m
 
 /// A joint that both files have.
 struct Match {
@@ -65,35 +67,87 @@ struct World {
   std::vector<Quat> rotations;
 };
 
-World world_at(const PlacedClip& clip, double time_s) {
-  const Skeleton& skeleton = clip.character->skeleton;
-  const Pose pose = sample(skeleton, *clip.animation, clip.animation->start_s + time_s);
+World world_of(const PlacedClip& clip, const Pose& pose) {
   World world;
-  for (const Affine& file_from_node : world_transforms(skeleton, pose)) {
+  for (const Affine& file_from_node : world_transforms(clip.character->skeleton, pose)) {
     world.positions.push_back(clip.world_from_file * Vec3(file_from_node.translation()));
     world.rotations.push_back(clip.world_from_file.rotation * rotation_part(file_from_node.linear()));
   }
   return world;
 }
 
-void compare(const std::vector<Match>& matches, const World& a, const World& b, double time_s,
-             std::vector<JointDifference>& joints) {
-  for (std::size_t m = 0; m < matches.size(); ++m) {
-    const Match& match = matches[m];
-    const double position_mm = 1000.0 * (a.positions[match.node_a] - b.positions[match.node_b]).norm();
-    Quat local_a = a.rotations[match.node_a];
-    Quat local_b = b.rotations[match.node_b];
-    if (match.parent >= 0) {
-      local_a = a.rotations[matches[match.parent].node_a].conjugate() * local_a;
-      local_b = b.rotations[matches[match.parent].node_b].conjugate() * local_b;
-    }
-    const double rotation_deg = degrees(angle_between(local_a, local_b));
-    if (position_mm > joints[m].position_mm)
-      joints[m].position_mm = position_mm, joints[m].position_at_s = time_s;
-    if (rotation_deg > joints[m].rotation_deg)
-      joints[m].rotation_deg = rotation_deg, joints[m].rotation_at_s = time_s;
-  }
+World world_at(const PlacedClip& clip, double time_s) {
+  return world_of(clip, sample(clip.character->skeleton, *clip.animation, clip.animation->start_s + time_s));
 }
+
+/// Compares two clips of the same joints.
+class Comparison {
+ public:
+  Comparison(const PlacedClip& a, const PlacedClip& b, std::vector<Match> matches)
+      : a_(a), b_(b), matches_(std::move(matches)) {
+    for (const Match& match : matches_)
+      joints_.push_back({a.character->skeleton.label(match.node_a), 0, 0, 0, 0});
+    same_axes_ = rest_poses_agree();
+    first_a_ = world_at(a_, 0.0).rotations;
+    first_b_ = world_at(b_, 0.0).rotations;
+  }
+
+  bool same_axes() const { return same_axes_; }
+  std::vector<JointDifference> take_joints() { return std::move(joints_); }
+
+  void compare_at(double time_s) {
+    const World a = world_at(a_, time_s);
+    const World b = world_at(b_, time_s);
+    for (std::size_t m = 0; m < matches_.size(); ++m) {
+      JointDifference& joint = joints_[m];
+      const double position_mm =
+          1000.0 * (a.positions[matches_[m].node_a] - b.positions[matches_[m].node_b]).norm();
+      const double rotation_deg = degrees(angle_between(local(a.rotations, first_a_, m, &Match::node_a),
+                                                        local(b.rotations, first_b_, m, &Match::node_b)));
+      if (position_mm > joint.position_mm) joint.position_mm = position_mm, joint.position_at_s = time_s;
+      if (rotation_deg > joint.rotation_deg) joint.rotation_deg = rotation_deg, joint.rotation_at_s = time_s;
+    }
+  }
+
+ private:
+  /// Rotation of a joint from its matched parent: as it is, or as a change since the first frame, in world
+  /// axes.
+  Quat local(const std::vector<Quat>& now, const std::vector<Quat>& first, std::size_t match,
+             int Match::*node) const {
+    const auto turned = [&](std::size_t m) -> Quat {
+      const int i = matches_[m].*node;
+      return same_axes_ ? now[i] : Quat(now[i] * first[i].conjugate());
+    };
+    const int parent = matches_[match].parent;
+    return parent < 0 ? turned(match) : Quat(turned(parent).conjugate() * turned(match));
+  }
+
+  bool rest_poses_agree() const {
+    const World a = world_of(a_, rest_pose(a_.character->skeleton));
+    const World b = world_of(b_, rest_pose(b_.character->skeleton));
+    for (const Match& match : matches_) {
+      const Rigid local_a = rest_local(a, match, &Match::node_a);
+      const Rigid local_b = rest_local(b, match, &Match::node_b);
+      if (angle_between(local_a.rotation, local_b.rotation) > kSameAxes) return false;
+      if (match.parent >= 0 && (local_a.translation - local_b.translation).norm() > kSameOffset) return false;
+    }
+    return true;
+  }
+
+  Rigid rest_local(const World& world, const Match& match, int Match::*node) const {
+    const Rigid own{world.rotations[match.*node], world.positions[match.*node]};
+    if (match.parent < 0) return own;
+    const int parent = matches_[match.parent].*node;
+    return Rigid{world.rotations[parent], world.positions[parent]}.inverse() * own;
+  }
+
+  const PlacedClip& a_;
+  const PlacedClip& b_;
+  std::vector<Match> matches_;
+  std::vector<JointDifference> joints_;
+  bool same_axes_ = true;
+  std::vector<Quat> first_a_, first_b_;
+};
 
 double share_of_tolerance(const JointDifference& joint, const DifferenceSettings& settings) {
   return std::max(joint.position_mm / std::max(settings.tolerance_mm, 1e-9),
@@ -145,7 +199,7 @@ Result<Difference> difference_of(const PlacedClip& a, const PlacedClip& b,
   difference.clip_b = b.animation->name;
   difference.duration_a_s = a.animation->duration_s();
   difference.duration_b_s = b.animation->duration_s();
-  const std::vector<Match> matches = match_joints(a.character->skeleton, b.character->skeleton, difference);
+  std::vector<Match> matches = match_joints(a.character->skeleton, b.character->skeleton, difference);
   if (matches.empty())
     return Error{ErrorKind::input,
                  b.character->path.string(),
@@ -154,19 +208,15 @@ Result<Difference> difference_of(const PlacedClip& a, const PlacedClip& b,
                  "",
                  "no joint has the same name as one of " + a.character->path.string(),
                  "compare clips of the same skeleton"};
-  std::vector<JointDifference> joints;
-  for (const Match& match : matches)
-    joints.push_back({a.character->skeleton.label(match.node_a), 0, 0, 0, 0});
-
+  Comparison comparison(a, b, std::move(matches));
+  difference.same_axes = comparison.same_axes();
   difference.rate =
       std::clamp(std::max(native_rate(*a.animation), native_rate(*b.animation)), kMinRate, kMaxRate);
   const double shared_s = std::min(difference.duration_a_s, difference.duration_b_s);
   const long last = std::lround(std::floor(shared_s * difference.rate + 1e-3));
-  for (long i = 0; i <= last; ++i) {
-    const double time_s = static_cast<double>(i) / difference.rate;
-    compare(matches, world_at(a, time_s), world_at(b, time_s), time_s, joints);
-    ++difference.samples;
-  }
+  for (long i = 0; i <= last; ++i) comparison.compare_at(static_cast<double>(i) / difference.rate);
+  difference.samples = last + 1;
+  std::vector<JointDifference> joints = comparison.take_joints();
   std::stable_sort(joints.begin(), joints.end(), [&](const JointDifference& x, const JointDifference& y) {
     return share_of_tolerance(x, settings) > share_of_tolerance(y, settings);
   });
@@ -209,6 +259,7 @@ std::string difference_json(const std::string& a, const std::string& b, const Di
   json["samples"] = difference.samples;
   json["position_max_mm"] = largest(difference, &JointDifference::position_mm);
   json["rotation_max_deg"] = largest(difference, &JointDifference::rotation_deg);
+  json["rotations"] = difference.same_axes ? "local" : "since-first-frame";
   json["joints"] = Json::array();
   for (const JointDifference& joint : difference.joints)
     json["joints"].push_back({{"joint", joint.joint},
@@ -232,6 +283,8 @@ std::string difference_text(const std::string& a, const std::string& b, const Di
   if (!difference.same_duration)
     text += fmt::format("lengths differ: {:.3f} s and {:.3f} s\n", difference.duration_a_s,
                         difference.duration_b_s);
+  if (!difference.same_axes)
+    text += "rest poses differ: rotations are compared as changes since the first frame\n";
   for (std::size_t i = 0; i < std::min(kWorstShown, difference.joints.size()); ++i) {
     const JointDifference& joint = difference.joints[i];
     text += fmt::format("  {}: {:.4g} mm at {:.3f} s, {:.4g} degrees at {:.3f} s\n", joint.joint,

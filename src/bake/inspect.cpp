@@ -111,12 +111,14 @@ int exit_status(Verdict verdict) { return static_cast<int>(verdict); }
 
 double native_rate(const Animation& animation) {
   if (animation.fps > 0.0) return animation.fps;
-  double rate = 0.0;
-  for (const Track& track : animation.tracks) {
-    if (track.times.size() < 2) continue;
-    const double span = track.times.back() - track.times.front();
-    rate = std::max(rate, static_cast<double>(track.times.size() - 1) / span);
-  }
+  double spacing = 0.0;
+  for (const Track& track : animation.tracks)
+    for (std::size_t i = 1; i < track.times.size(); ++i) {
+      const double step = track.times[i] - track.times[i - 1];
+      if (spacing == 0.0 || step < spacing) spacing = step;
+    }
+  if (spacing <= 0.0) return 0.0;
+  const double rate = 1.0 / spacing;
   const double whole = std::round(rate);
   return std::abs(rate - whole) < 1e-3 * rate ? whole : rate;
 }

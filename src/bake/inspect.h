@@ -29,7 +29,7 @@ struct ClipInspection {
   std::string name;
   double duration_s = 0.0;
   long frames = 0;
-  double fps = 0.0;               // the file's own rate, or the rate of its keys; 0 for a single key
+  double fps = 0.0;               // see native_rate; 0 for a single key
   std::optional<RomFigures> rom;  // of a humanoid
 };
 
@@ -48,7 +48,7 @@ struct InspectSettings {
   std::string region = "human";
 };
 
-/// Frames and native rate of an animation: the file's, or the mean rate of its busiest track.
+/// Frames per second of an animation: the file's, or that of its closest keys (a reduced clip leaves keys out).
 double native_rate(const Animation& animation);
 
 RomFigures rom_figures(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,

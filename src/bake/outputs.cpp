@@ -28,7 +28,8 @@ Error cannot_write(const fs::path& path, const std::string& why, std::string fix
 
 bool same_file(const fs::path& a, const fs::path& b) {
   std::error_code error;
-  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+  return fs::weakly_canonical(fs::absolute(a, error), error) ==
+         fs::weakly_canonical(fs::absolute(b, error), error);
 }
 
 }  // namespace

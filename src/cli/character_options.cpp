@@ -67,7 +67,7 @@ void declare_humanoid_options(Options& options, HumanoidOptions& target) {
       },
       "up axis of the file [default: found out]");
   options.number("--height", "M", target.height_m, Range{0.05, 50.0},
-                 "height of the character, sole to crown; sets the unit of a file that states none");
+                 "height of the character, sole to crown [default: found out]");
 }
 
 }  // namespace ukemi

@@ -50,7 +50,10 @@ class HelpLayout : public CLI::Formatter {
     for (const CLI::Option* option :
          app->get_options([](const CLI::Option* o) { return o->get_positional(); }))
       text += " " + option->get_name(true, false);
-    return text + " [options]\n" + make_positionals(app) + make_groups(app, mode);
+    std::string groups = make_groups(app, mode);
+    for (auto gap = groups.find("\n\n\n"); gap != std::string::npos; gap = groups.find("\n\n\n", gap))
+      groups.erase(gap, 1);
+    return text + " [options]\n" + make_positionals(app) + groups;
   }
 
   std::string make_group(std::string title, bool positional,
@@ -246,10 +249,11 @@ void Options::flag(const std::string& names, bool& target, const std::string& he
   parser_->declare_flag(names, target, true, help);
 }
 
-void Options::on_off(const std::string& name, bool& target, const std::string& help) {
+void Options::on_off(const std::string& name, bool& target, const std::string& help,
+                     const std::string& opposite) {
   const bool on = target;
   parser_->declare_flag("--" + name, target, true, with_notes(help, {on ? "default" : ""}));
-  parser_->declare_flag("--no-" + name, target, false, with_notes("not that", {on ? "" : "default"}));
+  parser_->declare_flag("--no-" + name, target, false, with_notes(opposite, {on ? "" : "default"}));
 }
 
 void Options::choice(const std::string& names, const std::vector<std::string>& words, std::size_t chosen,

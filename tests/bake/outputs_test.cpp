@@ -56,6 +56,7 @@ TEST_F(Outputs, ThatCannotBeWrittenAreRefusedBeforeAnythingRuns) {
 
 TEST_F(Outputs, MayNotNameTheSameFileTwiceNorTheCharacter) {
   EXPECT_EQ(refused({folder / "a.glb", folder / "." / "a.glb"}).what, "is named twice as an output");
+  EXPECT_EQ(refused({"none-such.glb", "./none-such.glb"}).what, "is named twice as an output");
   const fs::path hero = folder / "hero.glb";
   std::ofstream(hero) << "x";
   EXPECT_EQ(refused({folder / "." / "hero.glb"}, hero.string()).what, "would overwrite the character");

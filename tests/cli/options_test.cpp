@@ -42,7 +42,7 @@ struct Example {
         "--keys", {"reduced", "all"}, 0, [this](std::size_t i) { keys = i; }, "keys of the clip");
     options.paths("-o,--output", outputs, "the clip");
     options.flag("--json", json, "as JSON");
-    options.on_off("until-rest", until_rest, "end at rest");
+    options.on_off("until-rest", until_rest, "end at rest", "go on");
   }
 };
 

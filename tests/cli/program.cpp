@@ -1,0 +1,99 @@
+#include "program.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+extern char** environ;
+
+namespace ukemi {
+namespace fs = std::filesystem;
+namespace {
+
+std::string content_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Starts the program with its outputs in two files and its working directory in `folder`.
+int spawn_and_wait(const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& out,
+                   const fs::path& err) {
+  std::vector<char*> words;
+  std::string program = UKEMI_PROGRAM;
+  words.push_back(program.data());
+  std::vector<std::string> copies = arguments;
+  for (std::string& word : copies) words.push_back(word.data());
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  pid_t child = 0;
+  const int failed = posix_spawn(&child, words[0], &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) return -1;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+void Program::SetUp() {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  folder = fs::path(testing::TempDir()) / (std::string("ukemi_") + test->test_suite_name() + "_" +
+                                           test->name() + "_" + std::to_string(getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+}
+
+void Program::TearDown() { fs::remove_all(folder); }
+
+Ran Program::run(const std::vector<std::string>& arguments) {
+  const fs::path out = folder.string() + ".out";
+  const fs::path err = folder.string() + ".err";
+  Ran result;
+  result.status = spawn_and_wait(arguments, folder, out, err);
+  result.out = content_of(out);
+  result.err = content_of(err);
+  fs::remove(out);
+  fs::remove(err);
+  return result;
+}
+
+std::vector<std::string> Program::files() const {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void Program::write(const std::string& name, const std::string& content) const {
+  std::ofstream(folder / name, std::ios::binary) << content;
+}
+
+std::string Program::read(const std::string& name) const { return content_of(folder / name); }
+
+void Program::expect_refused(const std::vector<std::string>& arguments, int status, const std::string& what) {
+  std::string line = "ukemi";
+  for (const std::string& word : arguments) line += " " + word;
+  SCOPED_TRACE(line);
+  const std::vector<std::string> before = files();
+  const Ran result = run(arguments);
+  EXPECT_EQ(result.status, status);
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(result.err.rfind("ukemi: error: ", 0), 0u) << result.err;
+  EXPECT_NE(result.err.find(what), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("\n  fix: "), std::string::npos) << result.err;
+  EXPECT_EQ(files(), before);
+}
+
+}  // namespace ukemi

@@ -1,0 +1,36 @@
+// Runs the real program in a folder of its own: status, both outputs and the files left behind, together.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ukemi {
+
+struct Ran {
+  int status = -1;  // exit status; -1 where the program did not end by itself
+  std::string out;
+  std::string err;
+};
+
+class Program : public testing::Test {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  /// The program with these arguments, in `folder`.
+  Ran run(const std::vector<std::string>& arguments);
+  /// Names of everything in `folder`, sorted.
+  std::vector<std::string> files() const;
+  void write(const std::string& name, const std::string& content) const;
+  std::string read(const std::string& name) const;
+
+  /// Expects a refusal: the status, nothing on stdout, an error that holds `what`, a fix, and no new file.
+  void expect_refused(const std::vector<std::string>& arguments, int status, const std::string& what);
+
+  std::filesystem::path folder;
+};
+
+}  // namespace ukemi

@@ -1,0 +1,166 @@
+// Bad command lines and bad files: a message that names the thing and the fix, the exit status, nothing
+// written.
+#include <fstream>
+
+#include "program.h"
+
+namespace ukemi {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kMustChange = 2;
+constexpr int kCannotWrite = 4;
+
+using Refusal = Program;
+
+TEST_F(Refusal, OfNoOrUnknownCommands) {
+  expect_refused({}, kMustChange, "no command");
+  expect_refused({"bkae"}, kMustChange, "unknown command 'bkae'\n  fix: did you mean 'bake'?");
+  expect_refused({"xyzzyx"}, kMustChange, "choose one of: bake inspect render diff");
+  expect_refused({"--vresion"}, kMustChange, "unknown option '--vresion'");
+}
+
+TEST_F(Refusal, OfUnknownOptionsAndArguments) {
+  expect_refused({"bake", "mannequin", "--preest", "kick", "-o", "a.glb"}, kMustChange,
+                 "did you mean '--preset'?");
+  expect_refused({"bake", "mannequin", "other.glb", "-o", "a.glb"}, kMustChange,
+                 "unexpected argument 'other.glb'");
+  expect_refused({"bake", "-o", "a.glb"}, kMustChange, "CHARACTER is missing");
+  expect_refused({"diff", "a.glb"}, kMustChange, "B is missing");
+  expect_refused({"inspect"}, kMustChange, "FILE is missing");
+}
+
+TEST_F(Refusal, OfUnknownWords) {
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--hit", "haed"}, kMustChange, "did you mean 'head'?");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--from", "letf"}, kMustChange, "did you mean 'left'?");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--preset", "kcik"}, kMustChange,
+                 "did you mean 'kick'?");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--scene", "trampoline"}, kMustChange, "'trampoline'");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--pose", "sit"}, kMustChange, "unknown pose 'sit'");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--limits", "edge"}, kMustChange,
+                 "did you mean 'edges'?");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--active", "on"}, kMustChange,
+                 "--active: unknown word 'on'");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--rate", "fast"}, kMustChange,
+                 "--rate: unknown word 'fast'");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--map", "head"}, kMustChange,
+                 "'head' is not SEGMENT=NODE");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--map", "haed=Head"}, kMustChange,
+                 "did you mean 'head'?");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--map", "head=NoSuchNode"}, kMustChange, "NoSuchNode");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--region", "humna"}, kMustChange, "humna");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--unit", "parsec"}, kMustChange,
+                 "'parsec' is no unit");
+}
+
+TEST_F(Refusal, OfNumbersOutOfRange) {
+  const std::pair<const char*, const char*> numbers[] = {
+      {"--mass", "-70"},     {"--mass", "0"},         {"--ball-mass", "-5"}, {"--ball-mass", "1e9"},
+      {"--ball-speed", "0"}, {"--ball-radius", "-1"}, {"--duration", "0"},   {"--duration", "3600"},
+      {"--fps", "0"},        {"--fps", "-30"},        {"--fps", "1e6"},      {"--hold", "-1"},
+      {"--active-k", "0"},   {"--damping", "-1"},     {"--rate", "fixed:0"}, {"--key-error-mm", "0"},
+      {"--height", "0"},     {"--at", "-1"},          {"--fps", "sixty"},    {"--duration", "nan"},
+  };
+  for (const auto& [option, value] : numbers)
+    expect_refused({"bake", "mannequin", "-o", "a.glb", option, value}, kMustChange,
+                   std::string(option) + ": ");
+}
+
+TEST_F(Refusal, OfCharactersThatCannotBeRead) {
+  write("empty.glb", "");
+  write("empty.bvh", "");
+  write("text.doc", "hello");
+  write("noise.glb", std::string(1000, '\x5a'));
+  fs::create_directory(folder / "folder.glb");
+  expect_refused({"bake", "missing.glb", "-o", "a.glb"}, kMustChange, "missing.glb: cannot read");
+  expect_refused({"bake", "text.doc", "-o", "a.glb"}, kMustChange, "text.doc");
+  expect_refused({"bake", "empty.glb", "-o", "a.glb"}, kMustChange, "empty.glb");
+  expect_refused({"bake", "empty.bvh", "-o", "a.glb"}, kMustChange, "empty.bvh");
+  expect_refused({"bake", "noise.glb", "-o", "a.glb"}, kMustChange, "noise.glb");
+  expect_refused({"bake", "folder.glb", "-o", "a.glb"}, kMustChange, "folder.glb: is a directory");
+  expect_refused({"render", "missing.glb", "-o", "a.png"}, kMustChange, "missing.glb");
+  expect_refused({"diff", "missing.glb", "mannequin"}, kMustChange, "missing.glb");
+}
+
+const char* const kBox =
+    R"({"asset":{"version":"2.0"},"nodes":[{"name":"box"}],"scenes":[{"nodes":[0]}],"scene":0})";
+
+TEST_F(Refusal, OfAFileThatIsNoHumanoid) {
+  write("box.gltf", kBox);
+  expect_refused({"bake", "box.gltf", "-o", "a.glb"}, kMustChange, "not a humanoid");
+}
+
+TEST_F(Refusal, OfOutputsThatCannotBe) {
+  fs::create_directory(folder / "folder.glb");
+  expect_refused({"bake", "mannequin"}, kMustChange, "nothing to write");
+  expect_refused({"bake", "mannequin", "-o", "a.fbx"}, kMustChange, "a.fbx: unknown output format");
+  expect_refused({"bake", "mannequin", "--sheet", "a.gif"}, kMustChange, "a.gif: unknown picture format");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "-o", "./a.glb"}, kMustChange, "named twice");
+  expect_refused({"bake", "mannequin", "-o", "folder.glb"}, kCannotWrite, "is a directory");
+  expect_refused({"bake", "mannequin", "-o", "none/a.glb"}, kCannotWrite, "there is no folder 'none'");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--report", "none/a.json"}, kCannotWrite, "none");
+  expect_refused({"bake", "mannequin", "-o", "/proc/a.glb"}, kCannotWrite, "/proc/a.glb: cannot write");
+  expect_refused({"render", "mannequin"}, kMustChange, "no output");
+  expect_refused({"render", "mannequin", "-o", "a.jpg"}, kMustChange, "unknown picture format");
+  expect_refused({"bake", "mannequin", "--json", "--quiet", "-o", "a.glb"}, kMustChange,
+                 "exclude each other");
+}
+
+TEST_F(Refusal, OfStartsThatContradictEachOther) {
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--at", "0.5"}, kMustChange, "--at needs a clip");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--clip", "walk", "--pose", "rest"}, kMustChange,
+                 "exclude");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--clip", "wakl"}, kMustChange, "did you mean 'walk'?");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--clip", "walk", "--at", "99"}, kMustChange,
+                 "outside the clip");
+}
+
+using Help = Program;
+
+TEST_F(Help, GoesToStdoutWithStatusZero) {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{"--help"},
+                                                                                         {"bake", "--help"},
+                                                                                         {"inspect", "-h"},
+                                                                                         {"render", "--help"},
+                                                                                         {"diff", "--help"},
+                                                                                         {"--version"}}) {
+    const Ran result = run(arguments);
+    EXPECT_EQ(result.status, 0) << arguments.front();
+    EXPECT_NE(result.out, "");
+    EXPECT_EQ(result.err, "");
+  }
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(Help, NamesEveryCommandAndOnlyThose) {
+  const std::string text = run({"--help"}).out;
+  for (const char* command : {"bake CHARACTER", "inspect FILE", "render FILE", "diff A B"})
+    EXPECT_NE(text.find(command), std::string::npos) << command;
+  for (const char* later : {"batch", "compare CHARACTER", "calibrate", "review", "recipe"})
+    EXPECT_EQ(text.find(later), std::string::npos) << later;
+}
+
+TEST_F(Help, TellsDefaultsAndLegalRanges) {
+  const std::string text = run({"bake", "--help"}).out;
+  for (const char* part : {"--fps N", "[default 60; 1 to 1000]", "[default 3; above 0, at most 60]",
+                           "[default medicine-ball]", "[default chest]", "[default: found out]"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  for (const char* later : {"--lead", "--tone", "--recover", "--append", "--additive"})
+    EXPECT_EQ(text.find(later), std::string::npos) << later;
+}
+
+TEST_F(Help, LinesFitATerminal) {
+  for (const char* command : {"bake", "inspect", "render", "diff"}) {
+    const std::string text = run({command, "--help"}).out;
+    std::size_t begin = 0, lines = 0;
+    for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
+      EXPECT_LE(end - begin, 120u) << text.substr(begin, end - begin);
+      begin = end + 1;
+      ++lines;
+    }
+    EXPECT_GT(lines, 5u);
+  }
+}
+
+}  // namespace
+}  // namespace ukemi
