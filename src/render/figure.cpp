@@ -14,7 +14,7 @@ const Rgba kJointBall = srgb(0x5E5348);
 const Rgba kBall = srgb(0xE07A3F);
 const Rgba kBallBand = srgb(0x7A3B1D);
 const Rgba kBox = srgb(0xD9A441);
-constexpr float kOverlayAlpha = 0.62f;
+constexpr float kOverlayAlpha = 0.5f;
 
 Affine file_to_world(const Shot& shot) {
   if (shot.humanoid != nullptr) return shot.humanoid->world_from_file.affine();
@@ -66,7 +66,7 @@ struct JointMap {
 std::vector<JointMap> joint_maps(const Character& character, const MeshPart& part,
                                  const Affine& world_from_file, const std::vector<Affine>& file_from_node) {
   std::vector<JointMap> maps;
-  if (part.skin < 0) {
+  if (part.skin < 0 || character.skins[part.skin].joints.empty()) {
     maps.emplace_back(part.node < 0 ? world_from_file : world_from_file * file_from_node[part.node]);
     return maps;
   }
@@ -216,6 +216,7 @@ void Figure::add_mesh(Geometry& geometry, const std::vector<Affine>& file_from_n
 void Figure::add_shapes(Geometry& geometry, int frame, float alpha) const {
   Surface surface;
   surface.alpha = alpha < 1.0f ? Material::Alpha::blend : Material::Alpha::opaque;
+  surface.takes_shadow = alpha >= 1.0f;
   geometry.begin(surface);
   const BodyPose& pose = (*shot_.segments)[frame];
   for (int i = 0; i < kSegmentCount; ++i) {
@@ -229,6 +230,12 @@ void Figure::add_shapes(Geometry& geometry, int frame, float alpha) const {
         add_box(geometry, world_from_shape, shape.size, color);
     }
   }
+}
+
+/// Nodes that only place the figure in the file are no bones.
+bool Figure::is_above_figure(int node) const {
+  const int root = shot_.humanoid != nullptr ? shot_.humanoid->root : -1;
+  return root >= 0 && node != root && shot_.character->skeleton.is_ancestor(node, root);
 }
 
 void Figure::add_bones(Geometry& geometry, const std::vector<Affine>& file_from_node) const {
@@ -245,8 +252,10 @@ void Figure::add_bones(Geometry& geometry, const std::vector<Affine>& file_from_
   Surface surface;
   surface.double_sided = true;
   geometry.begin(surface);
-  for (const int node : skeleton.order)
-    if (skeleton.nodes[node].parent >= 0) add_bone(skeleton.nodes[node].parent, place(node));
+  for (const int node : skeleton.order) {
+    const int parent = skeleton.nodes[node].parent;
+    if (parent >= 0 && !is_above_figure(parent)) add_bone(parent, place(node));
+  }
   add_head(geometry, file_from_node);
   if (!shot_.character->bvh) return;
   const auto& ends = shot_.character->bvh->end_site;

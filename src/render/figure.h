@@ -34,6 +34,7 @@ class Figure {
   void add_bones(Geometry& geometry, const std::vector<Affine>& file_from_node) const;
   void add_head(Geometry& geometry, const std::vector<Affine>& file_from_node) const;
   void add_props(Geometry& geometry, int frame) const;
+  bool is_above_figure(int node) const;
   std::vector<Affine> world(int frame) const;
 
   const Shot& shot_;

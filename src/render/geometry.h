@@ -31,6 +31,7 @@ struct Surface {
   bool double_sided = false;
   bool mirrored = false;  // clockwise fronts
   bool casts_shadow = true;
+  bool takes_shadow = true;
   float gloss = 0.12f;
 };
 

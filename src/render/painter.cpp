@@ -385,6 +385,7 @@ void Painter::State::draw_pieces(const Geometry& geometry) const {
     set(surface, "base_color", look.color);
     set(surface, "alpha_cutoff", look.alpha == Material::Alpha::mask ? look.alpha_cutoff : -1.0f);
     set(surface, "gloss", look.gloss);
+    set(surface, "takes_shadow", look.takes_shadow ? 1.0f : 0.0f);
     const bool textured = look.texture >= 0 && look.texture < static_cast<int>(textures.size());
     gl.BindTexture(GL_TEXTURE_2D, textured ? textures[look.texture] : white);
     gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(piece.count), GL_UNSIGNED_INT,

@@ -19,17 +19,25 @@ void append(png_structp png, png_bytep data, png_size_t size) {
   }
 }
 
+bool is_opaque(const Picture& picture) {
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4)
+    if (picture.rgba[i] != 255) return false;
+  return true;
+}
+
 /// libpng reports errors by longjmp: no object with a destructor lives in this frame.
-bool write(png_structp png, png_infop info, const Picture& picture, std::vector<std::uint8_t>& bytes) {
+bool write(png_structp png, png_infop info, const Picture& picture, bool opaque,
+           std::vector<std::uint8_t>& bytes) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_write_fn(png, &bytes, append, nullptr);
   png_set_IHDR(png, info, static_cast<png_uint_32>(picture.width), static_cast<png_uint_32>(picture.height),
-               8, PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+               8, opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_compression_level(png, kCompressionLevel);
   png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_write_info(png, info);
+  if (opaque) png_set_filler(png, 0, PNG_FILLER_AFTER);
   for (int y = 0; y < picture.height; ++y)
     png_write_row(png, picture.rgba.data() + std::size_t{4} * picture.width * y);
   png_write_end(png, info);
@@ -46,7 +54,7 @@ Result<std::vector<std::uint8_t>> encode_png(const Picture& picture) {
   std::vector<std::uint8_t> bytes;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
-  const bool written = info && write(png, info, picture, bytes);
+  const bool written = info && write(png, info, picture, is_opaque(picture), bytes);
   png_destroy_write_struct(&png, &info);
   if (!written)
     return Error{ErrorKind::output,         "", 0, 0, "", "cannot encode the picture as PNG",

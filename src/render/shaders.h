@@ -38,6 +38,7 @@ uniform vec3 to_rim;
 uniform vec4 base_color;
 uniform float alpha_cutoff;  // negative: never cut out
 uniform float gloss;
+uniform float takes_shadow;  // 0 or 1
 uniform sampler2D base_texture;
 uniform sampler2DShadow light_map;
 out vec4 result;
@@ -64,7 +65,7 @@ void main() {
   vec3 n = dot(world_normal, world_normal) > 0.0 ? normalize(world_normal) : normalize(face);
   vec3 v = normalize(eye - world_position);
   if (!gl_FrontFacing && dot(world_normal, world_normal) > 0.0) n = -n;
-  float shadow = lit();
+  float shadow = mix(1.0, lit(), takes_shadow);
   float wrapped = max((dot(n, to_key) + 0.15) / 1.15, 0.0);
   vec3 light = mix(kGround, kSky, 0.5 + 0.5 * n.y) + kKey * wrapped * shadow;
   float facing = max(dot(n, v), 0.0);

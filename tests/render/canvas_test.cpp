@@ -67,6 +67,10 @@ TEST(Png, keeps_every_pixel) {
   const Picture back = decode_image({"image/png", *png}, 4096);
   EXPECT_EQ(back.width, 37);
   EXPECT_EQ(back.rgba, picture.rgba);
+  picture.rgba[3] = 77;
+  const auto with_alpha = encode_png(picture);
+  ASSERT_TRUE(with_alpha);
+  EXPECT_EQ(decode_image({"image/png", *with_alpha}, 4096).rgba, picture.rgba);
 }
 
 TEST(Png, refuses_a_picture_whose_size_lies) {

@@ -91,6 +91,26 @@ TEST(Figure, without_mesh_and_body_is_drawn_as_bones) {
   EXPECT_NEAR(top, 1.0f, 1e-5f);
 }
 
+TEST(Figure, draws_no_bone_from_the_file_s_origin_to_the_hips) {
+  Arm arm;
+  arm.character.parts.clear();
+  Humanoid humanoid;
+  humanoid.root = 1;
+  arm.shot.humanoid = &humanoid;
+  EXPECT_TRUE(Figure(arm.shot, false).body(0).indices.empty());
+  humanoid.root = 0;
+  EXPECT_FALSE(Figure(arm.shot, false).body(0).indices.empty());
+}
+
+TEST(Figure, of_a_skin_without_joints_stays_on_its_node) {
+  Arm arm;
+  arm.character.skins[0].joints.clear();
+  arm.character.parts[0].node = 0;
+  arm.character.parts[0].joints.clear();
+  EXPECT_LT((Figure(arm.shot, false).body(0).vertices[0].position - Eigen::Vector3f(1.0f, 1.5f, 0.0f)).norm(),
+            1e-6f);
+}
+
 TEST(Figure, shows_segments_instead_of_bones_and_over_a_mesh) {
   Arm arm;
   ArticulatedBody body;
