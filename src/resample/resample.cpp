@@ -21,17 +21,29 @@ void continue_signs(Pose& pose, const Pose& previous) {
     pose[i].rotation = nearest_sign(pose[i].rotation, previous[i].rotation);
 }
 
+/// Segments that are, or hang on, a chain of several bones.
+PerSegment<bool> shares_bend(const Humanoid& humanoid) {
+  PerSegment<bool> result{};
+  for (int s = 0; s < kSegmentCount; ++s)
+    result[s] = humanoid.segments[s].chain.size() > 1 || result[index(parent_of(segment_at(s)))];
+  return result;
+}
+
 /// The simulated segments have canonical rolls, the rig's have their own; both turn by the same rotation from
 /// the start, and the rig's joint centres move with the simulated segments.
 void measure(const BodyPose& rig_start, const BodyPose& rig, const BodyPose& start, const BodyPose& simulated,
              const Humanoid& humanoid, ResampleError& error) {
+  const PerSegment<bool> shared = shares_bend(humanoid);
   for (int s = 0; s < kSegmentCount; ++s) {
     if (humanoid.segments[s].fused()) continue;
     const Rigid motion = simulated[s] * start[s].inverse();
     const Rigid wanted = motion * rig_start[s];
     const double turned = degrees(angle_between(wanted.rotation, rig[s].rotation));
-    error.position_max_m = std::max(error.position_max_m, (wanted.translation - rig[s].translation).norm());
+    const double apart = (wanted.translation - rig[s].translation).norm();
     error.rotation_max_deg = std::max(error.rotation_max_deg, turned);
+    if (humanoid.segments[s].chain.size() > 1) continue;
+    error.position_max_m = std::max(error.position_max_m, apart);
+    if (!shared[s]) error.position_single_bones_max_m = std::max(error.position_single_bones_max_m, apart);
   }
 }
 
