@@ -16,16 +16,37 @@ struct Candidate {
 
 /// A skinned bone is worth more than any name: control rigs carry the same names as the rig that deforms.
 constexpr int kSkinBonus = 100;
+/// Some exporters list every node in the skin: those that move no vertex are worth less.
+constexpr int kWeightBonus = 30;
+/// Bones below a control ("Character_Ctrl_Reference") are the control rig's copies.
+constexpr int kBelowHelper = 3;
+
+/// Joints that move at least one vertex.
+std::vector<char> weighted_joints(const Character& character) {
+  std::vector<char> result(character.skeleton.nodes.size(), 0);
+  for (const MeshPart& part : character.parts) {
+    if (part.skin < 0) continue;
+    const std::vector<int>& joints = character.skins[part.skin].joints;
+    for (std::size_t v = 0; v < part.joints.size(); ++v)
+      for (int k = 0; k < 4; ++k)
+        if (part.weights[v][k] > 0.0f) result[joints[part.joints[v][k]]] = 1;
+  }
+  return result;
+}
 
 struct Reader {
   const Character& character;
   std::vector<NameReading> names;
-  std::vector<char> skinned;
+  std::vector<char> skinned, weighted, below_helper;
   bool any_skin = false;
 
-  explicit Reader(const Character& c) : character(c), skinned(skin_joints(c)) {
+  explicit Reader(const Character& c) : character(c), skinned(skin_joints(c)), weighted(weighted_joints(c)) {
     for (const Node& node : c.skeleton.nodes) names.push_back(read_name(node.name));
     any_skin = !c.skins.empty();
+    below_helper.assign(names.size(), 0);
+    for (const int node : c.skeleton.order)
+      if (const int parent = c.skeleton.nodes[node].parent; parent >= 0)
+        below_helper[node] = below_helper[parent] != 0 || names[parent].helper ? 1 : 0;
   }
 
   std::vector<Candidate> candidates(Part part, Side side, bool optional) const {
@@ -33,8 +54,10 @@ struct Reader {
     if (optional) result.push_back({});
     for (const int node : character.skeleton.order) {
       if (names[node].side != side) continue;
-      const int score = fit(names[node], part);
-      if (score > 0) result.push_back({node, score + (any_skin && skinned[node] ? kSkinBonus : 0)});
+      const int score = std::max(1, fit(names[node], part) - (below_helper[node] ? kBelowHelper : 0));
+      if (fit(names[node], part) == 0) continue;
+      result.push_back(
+          {node, score + (skinned[node] ? kSkinBonus : 0) + (weighted[node] ? kWeightBonus : 0)});
     }
     return result;
   }

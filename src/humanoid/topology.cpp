@@ -188,7 +188,6 @@ Bones find_by_topology(const Character& character, const Pose& pose) {
   set_limb(bones, leg_r, Segment::thigh_r, Segment::shank_r, Segment::foot_r);
   set_limb(bones, arm_l, Segment::upperarm_l, Segment::forearm_l, Segment::hand_l);
   set_limb(bones, arm_r, Segment::upperarm_r, Segment::forearm_r, Segment::hand_r);
-  const std::vector<char> skinned = skin_joints(character);
   for (const auto& [arm, clavicle] :
        {std::pair(arm_l, Segment::clavicle_l), std::pair(arm_r, Segment::clavicle_r)}) {
     const int above = character.skeleton.nodes[arm.upper].parent;
