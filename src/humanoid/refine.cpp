@@ -1,6 +1,7 @@
 #include "humanoid/refine.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "humanoid/figure.h"
 
@@ -137,7 +138,20 @@ struct FootReading {
   Quat node_from_foot;  // as if the foot lay flat: y up, x towards the toes
 };
 
-/// Mean over the lowest tenth of the frames, where feet lie flat.
+/// The foot as if it lay flat: y up, x towards the toes. Nothing on tiptoe or below a shank that does not
+/// stand.
+std::optional<FootReading> read_foot(const Figure& figure, const Vec3& up, int side, int foot, int toe) {
+  const Vec3 ankle = figure.world[foot].translation(), tip = figure.world[toe].translation();
+  const Vec3 forward = (tip - ankle) - (tip - ankle).dot(up) * up;
+  if (forward.norm() < 0.8 * (tip - ankle).norm()) return std::nullopt;
+  if (angle(figure.link(kShank[side], kFoot[side]), -up) > radians(30)) return std::nullopt;
+  Mat3 frame;
+  frame << forward.normalized(), up, forward.normalized().cross(up);
+  return FootReading{(ankle + tip).dot(up),
+                     rotation_part(figure.world[foot].linear()).conjugate() * Quat(frame)};
+}
+
+/// Mean over the lowest tenth of the readings, where feet lie flat.
 void read_feet_where_flat(const Character& character, const Reference& reference, Humanoid& humanoid) {
   for (int side = 0; side < 2; ++side) {
     const int foot = humanoid.segments[index(kFoot[side])].node();
@@ -145,15 +159,8 @@ void read_feet_where_flat(const Character& character, const Reference& reference
     if (foot < 0 || toe < 0) continue;
     std::vector<FootReading> readings;
     for (const double t : sample_times(character.animations[0], kMostFrames)) {
-      const auto world =
-          world_transforms(character.skeleton, sample(character.skeleton, character.animations[0], t));
-      const Vec3 ankle = world[foot].translation(), tip = world[toe].translation();
-      const Vec3 forward = (tip - ankle) - (tip - ankle).dot(reference.up) * reference.up;
-      if (forward.norm() < 0.8 * (tip - ankle).norm()) continue;  // on tiptoe
-      Mat3 frame;
-      frame << forward.normalized(), reference.up, forward.normalized().cross(reference.up);
-      readings.push_back(
-          {(ankle + tip).dot(reference.up), rotation_part(world[foot].linear()).conjugate() * Quat(frame)});
+      const Figure figure(character, humanoid, sample(character.skeleton, character.animations[0], t));
+      if (const auto reading = read_foot(figure, reference.up, side, foot, toe)) readings.push_back(*reading);
     }
     std::stable_sort(readings.begin(), readings.end(),
                      [](const FootReading& a, const FootReading& b) { return a.height < b.height; });

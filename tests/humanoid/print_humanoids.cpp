@@ -13,10 +13,10 @@
 namespace ukemi {
 namespace {
 
-PerJoint<SwingTwist> charts(const RangeOfMotion& range, const BodyPose& body) {
+PerSegment<Quat> rotations_of(const BodyPose& body) {
   PerSegment<Quat> rotations;
   for (int s = 0; s < kSegmentCount; ++s) rotations[s] = body[s].rotation;
-  return charts_of(range, rotations);
+  return rotations;
 }
 
 /// Distance inside the range, degrees; negative outside.
@@ -45,7 +45,7 @@ void print_stances(const Character& character, const Humanoid& humanoid, const R
        {std::pair("rest", StartPose::rest), {"stand", StartPose::stand}, {"guard", StartPose::guard}}) {
     const Pose pose = start_pose(character, humanoid, kind);
     const BodyPose body = canonical_segments_of(character.skeleton, humanoid, pose);
-    const auto chart = charts(range, body);
+    const PerJoint<SwingTwist> chart = charts_of(range, rotations_of(body));
     fmt::print("  {:5}", word);
     for (int j = 0; j < kJointCount; ++j) {
       const double margin = margin_deg(range.joints[j], chart[j]);
@@ -59,28 +59,54 @@ void print_stances(const Character& character, const Humanoid& humanoid, const R
 }
 
 struct Count {
-  int frames = 0, outside = 0;
+  int frames = 0, outside = 0, broken = 0, outside_whole = 0;
   double percent() const { return 100.0 * outside / std::max(1, frames); }
+  double percent_whole() const { return 100.0 * outside_whole / std::max(1, frames - broken); }
+  void add(const Count& other) {
+    frames += other.frames, outside += other.outside;
+    broken += other.broken, outside_whole += other.outside_whole;
+  }
 };
+
+/// Captured data that no body does, whatever its range: hands and feet folded past 95 degrees, forearms
+/// turned past 120.
+bool is_broken(const PerSegment<Quat>& rotations, Joint joint, const SwingTwist& chart) {
+  switch (joint) {
+    case Joint::wrist_l:
+    case Joint::wrist_r:
+    case Joint::ankle_l:
+    case Joint::ankle_r:
+      return angle_between(rotations[index(parent_of(joint))], rotations[index(child_of(joint))]) >
+             radians(95);
+    case Joint::elbow_l:
+    case Joint::elbow_r:
+      return std::abs(chart.twist) > radians(120);
+    default:
+      return false;
+  }
+}
 
 Count print_motion(const Character& character, const Humanoid& humanoid, const RangeOfMotion& range,
                    bool canonical) {
   PerJoint<Count> counts;
-  Count all;
   for (const Animation& animation : character.animations) {
     const Clip clip = sample_clip(character.skeleton, animation, animation.fps > 0 ? animation.fps : 30.0);
     for (const Pose& pose : clip.frames) {
       const BodyPose body = canonical ? canonical_segments_of(character.skeleton, humanoid, pose)
                                       : segments_of(character.skeleton, humanoid, pose);
-      const auto chart = charts(range, body);
+      const PerSegment<Quat> rotations = rotations_of(body);
+      const PerJoint<SwingTwist> chart = charts_of(range, rotations);
       for (int j = 0; j < kJointCount; ++j) {
-        ++counts[j].frames, ++all.frames;
-        if (excess(range.joints[j], chart[j]) > radians(5)) ++counts[j].outside, ++all.outside;
+        const int outside = excess(range.joints[j], chart[j]) > radians(5) ? 1 : 0;
+        const int broken = is_broken(rotations, joint_at(j), chart[j]) ? 1 : 0;
+        counts[j].add({1, outside, broken, outside * (1 - broken)});
       }
     }
-    if (character.format != SourceFormat::bvh && !canonical) break;
   }
-  fmt::print("  {} {:.2f} % of {}:", canonical ? "canonical" : "raw", all.percent(), all.frames);
+  Count all;
+  for (const Count& count : counts) all.add(count);
+  fmt::print("  {} {:.2f} % of {}, without broken ones {:.2f} %:", canonical ? "canonical" : "raw",
+             all.percent(), all.frames, all.percent_whole());
   for (int j = 0; j < kJointCount; ++j)
     if (counts[j].outside * 200 > counts[j].frames)
       fmt::print(" {} {:.0f}", name(joint_at(j)), counts[j].percent());
@@ -106,11 +132,8 @@ void print_file(const char* path, const RangeOfMotion& range, bool motion, std::
   print_stances(*character, *humanoid, range);
   for (const Warning& warning : diagnostics.warnings()) fmt::print("  warning: {}\n", warning.what);
   if (!motion) return;
-  for (const bool canonical : {false, true}) {
-    const Count count = print_motion(*character, *humanoid, range, canonical);
-    total[canonical].frames += count.frames;
-    total[canonical].outside += count.outside;
-  }
+  for (const bool canonical : {false, true})
+    total[canonical].add(print_motion(*character, *humanoid, range, canonical));
 }
 
 }  // namespace
@@ -132,6 +155,7 @@ int main(int count, char** arguments) {
   }
   for (const bool canonical : {false, true})
     if (motion)
-      fmt::print("total {} {:.3f} % of {}\n", canonical ? "canonical" : "raw", total[canonical].percent(),
-                 total[canonical].frames);
+      fmt::print("total {} {:.3f} % of {}, without {} broken ones {:.3f} %\n",
+                 canonical ? "canonical" : "raw", total[canonical].percent(), total[canonical].frames,
+                 total[canonical].broken, total[canonical].percent_whole());
 }
