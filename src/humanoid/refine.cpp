@@ -8,7 +8,7 @@
 namespace ukemi {
 namespace {
 
-constexpr std::size_t kMostFrames = 1500;
+constexpr int kMostFrames = 600;
 constexpr int kUprightForTrunk = 80;
 constexpr int kUprightForClavicles = 15;
 
@@ -53,15 +53,14 @@ struct Means {
   PerSegment<MeanRotation> wrist;  // hands against forearms that have taken the twist over
 };
 
-Means measure(const Character& character, const Reference& reference, const Humanoid& humanoid) {
+Means measure(const std::vector<Figure>& figures, const Vec3& up, const Humanoid& humanoid) {
   Means means;
-  for (const double t : sample_times(character.animations[0], kMostFrames)) {
-    const Figure figure(character, humanoid, sample(character.skeleton, character.animations[0], t));
+  for (const Figure& figure : figures) {
     const PerSegment<Quat> relative = relative_rotations(humanoid, figure);
     for (const Segment hand : kHand)
       means.wrist[index(hand)].add(turn(-twist_angle(relative[index(hand)], Vec3::UnitY())) *
                                    relative[index(hand)]);
-    if (!is_upright(figure, reference.up)) continue;
+    if (!is_upright(figure, up)) continue;
     for (int s = 1; s < kSegmentCount; ++s) means.upright[s].add(relative[s]);
   }
   return means;
@@ -94,12 +93,11 @@ struct HingeAxis {
   int count = 0;
 };
 
-HingeAxis measure_hinge(const Character& character, const Humanoid& humanoid, Segment upper, Segment lower,
-                        Segment end) {
+HingeAxis measure_hinge(const std::vector<Figure>& figures, const Humanoid& humanoid, Segment upper,
+                        Segment lower, Segment end) {
   HingeAxis axis;
   const int upper_node = humanoid.carrier_node(upper), lower_node = humanoid.carrier_node(lower);
-  for (const double t : sample_times(character.animations[0], kMostFrames)) {
-    const Figure f(character, humanoid, sample(character.skeleton, character.animations[0], t));
+  for (const Figure& f : figures) {
     const Vec3 n =
         f.link(upper, lower).normalized().cross(f.link(lower, end).normalized());  // length sin(bend)
     if (angle(f.link(upper, lower), f.link(lower, end)) < radians(30)) continue;
@@ -121,12 +119,12 @@ void roll_to(Humanoid& humanoid, Segment s, const Vec3& axis) {
   frame = Quat(m);
 }
 
-void read_hinges(const Character& character, Humanoid& humanoid) {
+void read_hinges(const std::vector<Figure>& figures, Humanoid& humanoid) {
   constexpr int kFrames = 10;
   for (int side = 0; side < 2; ++side) {
-    const HingeAxis elbow = measure_hinge(character, humanoid, kUpperArm[side], kForearm[side], kHand[side]);
+    const HingeAxis elbow = measure_hinge(figures, humanoid, kUpperArm[side], kForearm[side], kHand[side]);
     if (elbow.count >= kFrames) roll_to(humanoid, kUpperArm[side], elbow.upper);
-    const HingeAxis knee = measure_hinge(character, humanoid, kThigh[side], kShank[side], kFoot[side]);
+    const HingeAxis knee = measure_hinge(figures, humanoid, kThigh[side], kShank[side], kFoot[side]);
     if (knee.count < kFrames) continue;
     roll_to(humanoid, kThigh[side], -knee.upper);
     roll_to(humanoid, kShank[side], -knee.lower);
@@ -152,16 +150,14 @@ std::optional<FootReading> read_foot(const Figure& figure, const Vec3& up, int s
 }
 
 /// Mean over the lowest tenth of the readings, where feet lie flat.
-void read_feet_where_flat(const Character& character, const Reference& reference, Humanoid& humanoid) {
+void read_feet_where_flat(const std::vector<Figure>& figures, const Vec3& up, Humanoid& humanoid) {
   for (int side = 0; side < 2; ++side) {
     const int foot = humanoid.segments[index(kFoot[side])].node();
     const int toe = humanoid.toes[side];
     if (foot < 0 || toe < 0) continue;
     std::vector<FootReading> readings;
-    for (const double t : sample_times(character.animations[0], kMostFrames)) {
-      const Figure figure(character, humanoid, sample(character.skeleton, character.animations[0], t));
-      if (const auto reading = read_foot(figure, reference.up, side, foot, toe)) readings.push_back(*reading);
-    }
+    for (const Figure& figure : figures)
+      if (const auto reading = read_foot(figure, up, side, foot, toe)) readings.push_back(*reading);
     std::stable_sort(readings.begin(), readings.end(),
                      [](const FootReading& a, const FootReading& b) { return a.height < b.height; });
     MeanRotation mean;
@@ -174,9 +170,12 @@ void read_feet_where_flat(const Character& character, const Reference& reference
 
 void refine_from_motion(const Character& character, const Reference& reference, Humanoid& humanoid) {
   if (!only_motion(character)) return;
-  if (reference.is_frame) read_feet_where_flat(character, reference, humanoid);
-  read_hinges(character, humanoid);
-  centre(measure(character, reference, humanoid), humanoid);
+  std::vector<Figure> figures;
+  for (const double t : sample_times(character.animations[0], kMostFrames))
+    figures.emplace_back(character, humanoid, sample(character.skeleton, character.animations[0], t));
+  if (reference.is_frame) read_feet_where_flat(figures, reference.up, humanoid);
+  read_hinges(figures, humanoid);
+  centre(measure(figures, reference.up, humanoid), humanoid);
 }
 
 }  // namespace ukemi
