@@ -6,6 +6,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
+#include <meshoptimizer.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
@@ -97,6 +98,40 @@ class BufferWriter {
   std::vector<std::uint8_t> bytes_;
   Json views_ = Json::array();
   Json accessors_ = Json::array();
+};
+
+/// Attributes of a primitive's vertices, those it has; files of polygons hold every corner as a vertex of its
+/// own.
+struct Vertices {
+  std::vector<float> positions;
+  std::vector<float> normals;
+  std::vector<float> uvs;
+  std::vector<std::uint16_t> joints;
+  std::vector<float> weights;
+  std::vector<std::uint32_t> indices;
+
+  /// Makes vertices that are equal in everything one; order of first use.
+  void merge_equal() {
+    const std::size_t count = positions.size() / 3;
+    std::vector<meshopt_Stream> streams;
+    const auto add = [&](const auto& numbers) {
+      const std::size_t bytes = numbers.size() * sizeof(numbers[0]) / count;
+      if (!numbers.empty()) streams.push_back({numbers.data(), bytes, bytes});
+    };
+    add(positions), add(normals), add(uvs), add(joints), add(weights);
+    std::vector<unsigned> remap(count);
+    const std::size_t kept = meshopt_generateVertexRemapMulti(remap.data(), indices.data(), indices.size(),
+                                                              count, streams.data(), streams.size());
+    const auto apply = [&](auto& numbers) {
+      const std::size_t width = numbers.size() / count;
+      if (numbers.empty()) return;
+      meshopt_remapVertexBuffer(numbers.data(), numbers.data(), count, width * sizeof(numbers[0]),
+                                remap.data());
+      numbers.resize(kept * width);
+    };
+    apply(positions), apply(normals), apply(uvs), apply(joints), apply(weights);
+    for (std::uint32_t& index : indices) index = remap[index];
+  }
 };
 
 Eigen::Matrix4d matrix_of(const aiMatrix4x4& m) {
@@ -282,28 +317,40 @@ class SceneConverter {
 
   /// Null for a mesh without triangles.
   Json primitive_json(const aiMesh& mesh, SkinBones& bones) {
-    const std::size_t count = mesh.mNumVertices;
-    std::vector<std::uint32_t> indices;
+    Vertices vertices;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices == 3) indices.insert(indices.end(), face.mIndices, face.mIndices + 3);
+      if (face.mNumIndices == 3)
+        vertices.indices.insert(vertices.indices.end(), face.mIndices, face.mIndices + 3);
     }
-    if (indices.empty() || *std::max_element(indices.begin(), indices.end()) >= count) return nullptr;
-    Json attributes;
-    attributes["POSITION"] =
-        buffer_.add(numbers_of<3>(mesh.mVertices, count), kFloat, "VEC3", 3, kArrayBuffer, true);
-    if (mesh.HasNormals())
-      attributes["NORMAL"] = buffer_.add(unit_normals(mesh), kFloat, "VEC3", 3, kArrayBuffer, false);
+    const auto last = std::max_element(vertices.indices.begin(), vertices.indices.end());
+    if (vertices.indices.empty() || *last >= mesh.mNumVertices) return nullptr;
+    vertices.positions = numbers_of<3>(mesh.mVertices, mesh.mNumVertices);
+    if (mesh.HasNormals()) vertices.normals = unit_normals(mesh);
     if (mesh.HasTextureCoords(0)) {
-      std::vector<float> uvs = numbers_of<2>(mesh.mTextureCoords[0], count);
-      for (std::size_t i = 1; i < uvs.size(); i += 2) uvs[i] = 1.0f - uvs[i];
-      attributes["TEXCOORD_0"] = buffer_.add(uvs, kFloat, "VEC2", 2, kArrayBuffer, false);
+      vertices.uvs = numbers_of<2>(mesh.mTextureCoords[0], mesh.mNumVertices);
+      for (std::size_t i = 1; i < vertices.uvs.size(); i += 2) vertices.uvs[i] = 1.0f - vertices.uvs[i];
     }
-    if (mesh.HasBones()) add_weights(mesh, bones, attributes);
-    const int index_accessor = buffer_.add(indices, kUint32, "SCALAR", 1, kElementBuffer, false);
-    Json primitive{{"attributes", std::move(attributes)}, {"indices", index_accessor}};
+    if (mesh.HasBones()) read_weights(mesh, bones, vertices);
+    vertices.merge_equal();
+    Json primitive{{"attributes", attributes_json(vertices)},
+                   {"indices", buffer_.add(vertices.indices, kUint32, "SCALAR", 1, kElementBuffer, false)}};
     if (mesh.mMaterialIndex < scene_.mNumMaterials) primitive["material"] = mesh.mMaterialIndex;
     return primitive;
+  }
+
+  Json attributes_json(const Vertices& vertices) {
+    Json attributes{{"POSITION", buffer_.add(vertices.positions, kFloat, "VEC3", 3, kArrayBuffer, true)}};
+    const auto add = [&](const char* name, const auto& numbers, int component_type, const char* type,
+                         std::size_t width) {
+      if (!numbers.empty())
+        attributes[name] = buffer_.add(numbers, component_type, type, width, kArrayBuffer, false);
+    };
+    add("NORMAL", vertices.normals, kFloat, "VEC3", 3);
+    add("TEXCOORD_0", vertices.uvs, kFloat, "VEC2", 2);
+    add("JOINTS_0", vertices.joints, kUint16, "VEC4", 4);
+    add("WEIGHTS_0", vertices.weights, kFloat, "VEC4", 4);
+    return attributes;
   }
 
   template <int Width>
@@ -331,7 +378,7 @@ class SceneConverter {
   };
 
   /// The four strongest influences of every vertex, scaled to a sum of 1.
-  void add_weights(const aiMesh& mesh, SkinBones& bones, Json& attributes) {
+  void read_weights(const aiMesh& mesh, SkinBones& bones, Vertices& vertices) {
     std::vector<std::vector<Influence>> influences(mesh.mNumVertices);
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
       const aiBone& bone = *mesh.mBones[b];
@@ -344,8 +391,8 @@ class SceneConverter {
       }
     }
     if (bones.nodes.empty()) return;
-    std::vector<std::uint16_t> joints(4 * influences.size(), 0);
-    std::vector<float> weights(4 * influences.size(), 0.0f);
+    vertices.joints.assign(4 * influences.size(), 0);
+    vertices.weights.assign(4 * influences.size(), 0.0f);
     for (std::size_t v = 0; v < influences.size(); ++v) {
       auto& list = influences[v];
       if (list.empty()) list.push_back({1.0f, 0});
@@ -355,12 +402,10 @@ class SceneConverter {
       const float sum = std::accumulate(list.begin(), list.end(), 0.0f,
                                         [](float total, const Influence& i) { return total + i.weight; });
       for (std::size_t k = 0; k < list.size(); ++k) {
-        joints[4 * v + k] = static_cast<std::uint16_t>(list[k].joint);
-        weights[4 * v + k] = list[k].weight / sum;
+        vertices.joints[4 * v + k] = static_cast<std::uint16_t>(list[k].joint);
+        vertices.weights[4 * v + k] = list[k].weight / sum;
       }
     }
-    attributes["JOINTS_0"] = buffer_.add(joints, kUint16, "VEC4", 4, kArrayBuffer, false);
-    attributes["WEIGHTS_0"] = buffer_.add(weights, kFloat, "VEC4", 4, kArrayBuffer, false);
   }
 
   void write_animations() {
@@ -526,6 +571,7 @@ Result<Converted> convert_with_assimp(std::span<const std::uint8_t> bytes, const
   keep_only(importer, reader);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_REMOVE_EMPTY_BONES, false);
   const aiScene* scene =
       importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, hint.c_str());
   if (scene == nullptr || scene->mRootNode == nullptr)
