@@ -12,10 +12,6 @@ def _numbers(values):
     return " ".join(f"{value + 0.0:.6f}" for value in values)
 
 
-def _is_end(name):
-    return name.endswith("_End")
-
-
 def _joint(name, depth, order):
     order.append(name)
     pad, inner = "\t" * depth, "\t" * (depth + 1)
@@ -24,20 +20,19 @@ def _joint(name, depth, order):
     channels = f"6 Xposition Yposition Zposition {ROTATIONS}" if root else f"3 {ROTATIONS}"
     lines = [f"{pad}{'ROOT' if root else 'JOINT'} {name}", pad + "{"]
     lines += [f"{inner}OFFSET {_numbers(offset)}", f"{inner}CHANNELS {channels}"]
-    children = CHILDREN[name]
-    for child in children:
-        lines += _end_site(scale(OFFSET[child], 100.0), inner) if _is_end(child) else _joint(child, depth + 1, order)
-    if not children:
-        lines += _end_site(_fingertip(name), inner)
+    for child in CHILDREN[name]:
+        lines += _joint(child, depth + 1, order)
+    if not CHILDREN[name]:
+        lines += [f"{inner}End Site", inner + "{", f"{inner}\tOFFSET {_numbers(_tip(name))}", inner + "}"]
     return [*lines, pad + "}"]
 
 
-def _end_site(offset, pad):
-    return [f"{pad}End Site", pad + "{", f"{pad}\tOFFSET {_numbers(offset)}", pad + "}"]
-
-
-def _fingertip(name):
-    """Tip of a finger, centimetres from its base."""
+def _tip(name):
+    """End of a last joint, centimetres from it."""
+    if name == "HeadTop_End":
+        return (0.0, 1.0, 0.0)
+    if name.endswith("Toe_End"):
+        return (0.0, 0.0, 1.0)
     side = 1.0 if name.startswith("Left") else -1.0
     if name.endswith("Thumb1"):
         return (4.5 * side, -2.0, 4.0)

@@ -247,33 +247,37 @@ def stance_foot(phase):
     return (*ball_rocker(pitch), pitch)
 
 
-def swing_keys():
-    """Ankle height, ankle ahead of the hips and pitch through the cycle; the swing between what the stance gives."""
-    keys = []
+def swing_curves():
+    """Ankle height, ankle ahead of the hips, pitch and roll through the cycle: the swing between what the stance gives.
+
+    The roll is how far the ankle went ahead of the flat foot's place while the foot stood.
+    """
+    keys, rolls = [], []
     for phase in (0.0, 0.02, 0.04, 0.09, 0.2, 0.3, 0.4, 0.46, 0.50, 0.54, 0.57, TOE_OFF_AT):
         y, z, pitch = stance_foot(phase)
         keys.append((phase, y, z - hips_ahead(phase), pitch))
+        rolls.append(z)
     for phase, thigh, knee, pitch in SWING:
         leg = rotate(turn("x", -thigh), leg_line(knee - REST_BEND))
         x, y, z = hip_joint(phase)
         keys.append((phase, hip_height(phase) + y + leg[1], z + leg[2], pitch))
-    return [periodic([key[0] for key in keys], [key[k] for key in keys]) for k in (1, 2, 3)]
+    phases = [key[0] for key in keys]
+    curves = [periodic(phases, [key[k] for key in keys]) for k in (1, 2, 3)]
+    return [*curves, periodic(phases[: len(rolls)], rolls)]
 
 
-SWING_CURVES = swing_keys()
-TOE_BEND = periodic([0.0, 0.1, 0.3, TOE_OFF_AT, 0.66, 0.72, 0.80, 0.92], [6.0, 0.0, 0.0, 0.0, 30.0, 12.0, 4.0, 6.0])
-
+SWING_CURVES = swing_curves()
 
 def foot_at(phase):
-    """Ankle height, ankle ahead of the place of the last heel strike, pitch, bend of the toes."""
+    """Ankle height, ankle ahead of the place of the last heel strike, roll of that, pitch, bend of the toes."""
     phase %= 1.0
     if phase <= TOE_OFF_AT:
         y, z, pitch = stance_foot(phase)
-        return y, z, pitch, max(0.0, -pitch) if phase >= HEEL_OFF_AT else 0.0
-    y, ahead, pitch = (curve(phase) for curve in SWING_CURVES)
+        return y, z, z, pitch, max(0.0, -pitch) if phase >= HEEL_OFF_AT else 0.0
+    y, ahead, pitch, roll = (curve(phase) for curve in SWING_CURVES)
     last = -stance_foot(TOE_OFF_AT)[2]
     fade = min((phase - TOE_OFF_AT) / 0.14, 1.0)
-    return y, ahead + hips_ahead(phase), pitch, last * (1 - fade * fade * (3 - 2 * fade))
+    return y, ahead + hips_ahead(phase), roll, pitch, last * (1 - fade * fade * (3 - 2 * fade))
 
 
 def walk_pelvis(phase, travelled):
@@ -290,10 +294,11 @@ def walk_pose(phase, travelled):
     position, rotation = walk_pelvis(phase, travelled)
     pose = {"translation": position, "Hips": rotation}
     for side, sign, own in (("Left", 1.0, phase), ("Right", -1.0, phase + 0.5)):
-        y, ahead, pitch, toes = foot_at(own)
-        z = travelled - hips_ahead(own % 1.0) + ahead
+        y, ahead, roll, pitch, toes = foot_at(own)
+        x = HALF_STEP_WIDTH_M + roll * math.sin(math.radians(TOE_OUT_DEG))
+        z = travelled - hips_ahead(own % 1.0) + ahead - roll * (1.0 - math.cos(math.radians(TOE_OUT_DEG)))
         foot = multiply(turn("y", sign * TOE_OUT_DEG), turn("x", -pitch))
-        pose_leg(pose, side, (position, rotation), (sign * HALF_STEP_WIDTH_M, y, z), foot, toes)
+        pose_leg(pose, side, (position, rotation), (sign * x, y, z), foot, toes)
     walk_trunk(pose, phase)
     walk_arms(pose, phase)
     return pose
