@@ -20,7 +20,7 @@ Quat as_rotation(const Eigen::Vector4d& v) {
 
 Eigen::Vector4d interpolate(const Track& track, std::size_t key, double u) {
   const std::size_t middle = track.interpolation == Interpolation::cubic ? 1 : 0;
-  const Eigen::Vector4d a = key_value(track, key, middle);
+  Eigen::Vector4d a = key_value(track, key, middle);
   const Eigen::Vector4d b = key_value(track, key + 1, middle);
   switch (track.interpolation) {
     case Interpolation::step:
