@@ -33,7 +33,9 @@ Json settings_json(const BakeSettings& settings, const BakeOutcome& outcome) {
   const bool active = simulation.active != Active::off;
   json["active_k_1_s"] = active ? Json(simulation.active_k) : Json(nullptr);
   json["active_delay_s"] = active ? Json(simulation.active_delay_s) : Json(nullptr);
-  json["damping_1_s"] = simulation.damping.value_or(simulation.fixed_hz > 0.0 ? 0.0 : 10.0);
+  json["damping_1_s"] = damping_of(simulation);
+  json["tone"] = tone_of(simulation);
+  json["tone_fade_s"] = simulation.tone_fade_s;
   json["pose"] = outcome.start.from_clip ? Json(nullptr) : Json(outcome.start.name);
   json["clip"] = outcome.start.from_clip ? Json(outcome.start.name) : Json(nullptr);
   json["at_s"] = outcome.start.from_clip ? Json(outcome.start.at_s) : Json(nullptr);

@@ -54,6 +54,10 @@ bool is_trunk(Segment s) { return s == Segment::pelvis || s == Segment::abdomen 
 bool is_foot(Segment s) { return s == Segment::foot_l || s == Segment::foot_r; }
 bool is_hand(Segment s) { return s == Segment::hand_l || s == Segment::hand_r; }
 
+bool ends_at_joint(Segment s) {
+  return s == Segment::shank_l || s == Segment::shank_r || s == Segment::forearm_l || s == Segment::forearm_r;
+}
+
 double percentile(std::vector<double> values, double share) {
   const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + k, values.end());
@@ -96,6 +100,10 @@ double limb_radius(const Vec3& end, const std::vector<Vec3>& skin, double fallba
 Shape limb(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
   const double table = proportions(segment).radius * height_m;
   const double radius = std::clamp(limb_radius(end, skin, table), 0.3 * table, 2.5 * table);
+  // The caps of shank and forearm end at ankle and wrist: the heel is nearer to the ankle than a calf is
+  // thick.
+  if (ends_at_joint(segment))
+    return capsule_between(Vec3::Zero(), end.normalized() * std::max(0.0, end.norm() - radius), radius);
   if (!is_hand(segment)) return capsule_between(Vec3::Zero(), end, radius);
   double reach = end.norm() * 1.9;  // fingertip: the middle finger's base lies about half-way
   if (skin.size() >= kFewestVertices) {

@@ -108,6 +108,10 @@ void declare_method(Options& options, BakeSettings& settings) {
   options.number("--active-k", "1_S", simulation.active_k, Range{0.0, 2000.0, true}, "its strength k");
   options.number("--active-delay", "S", simulation.active_delay_s, Range{0.0, 10.0},
                  "time before it sets in");
+  options.number(
+      "--tone", "0..1", simulation.tone, Range{0.0, 1.0},
+      "share of a man's joint torques that hold the start pose at first; 0.3, or 0 with --rate fixed");
+  options.number("--tone-fade", "S", simulation.tone_fade_s, Range{0.0, 10.0, true}, "time in which it goes");
   options.number("--damping", "1_S", simulation.damping, Range{0.0, 100.0},
                  "joint damping; 10, or 0 with --rate fixed");
   options.custom(

@@ -208,6 +208,76 @@ void ActiveLimit::prepare(bool enabled) {
   }
 }
 
+namespace {
+
+constexpr double kFullTorqueAt = 0.35;   // rad: error at which a joint gives all its torque
+constexpr double kToneDamping_s = 0.12;  // damping over stiffness
+
+/// What a man's joint can give, N m: isometric maxima of adult men, the weaker direction (dynamometry; neck,
+/// trunk, shoulder and elbow are rough).
+double joint_torque(Joint joint) {
+  switch (joint) {
+    case Joint::spine:
+      return 200.0;
+    case Joint::chest:
+      return 150.0;
+    case Joint::neck:
+      return 30.0;
+    case Joint::clavicle_l:
+    case Joint::clavicle_r:
+    case Joint::shoulder_l:
+    case Joint::shoulder_r:
+      return 60.0;
+    case Joint::elbow_l:
+    case Joint::elbow_r:
+      return 45.0;
+    case Joint::wrist_l:
+    case Joint::wrist_r:
+      return 10.0;
+    case Joint::hip_l:
+    case Joint::hip_r:
+      return 150.0;
+    case Joint::knee_l:
+    case Joint::knee_r:
+      return 150.0;
+    case Joint::ankle_l:
+    case Joint::ankle_r:
+      break;
+  }
+  return 60.0;
+}
+
+}  // namespace
+
+Tone::Tone(OdeWorld& world, const Model& model, const ModelJoint& joint, double strength)
+    : model_(model), joint_(joint), torque_(strength * joint_torque(joint.joint)) {
+  if (torque_ > 0.0) motor_ = create_motor(world, model, joint);
+  capture();
+}
+
+void Tone::capture() {
+  parent_from_child_ = orientation(model_, joint_.parent).conjugate() * orientation(model_, joint_.child);
+}
+
+// A spring k and damper c over a step h as a motor: CFM = 1 / (h k + c), target speed = -k e CFM.
+void Tone::prepare(double h, double share) {
+  if (motor_ == nullptr) return;
+  dJointSetAMotorNumAxes(motor_, share > 0.0 ? 3 : 0);
+  if (share <= 0.0) return;
+  const Quat frame = world_from_joint(model_, joint_);
+  const Quat held = orientation(model_, joint_.parent) * parent_from_child_;
+  const Vec3 error = log_rotation(orientation(model_, joint_.child) * held.conjugate());
+  const double stiffness = share * torque_ / kFullTorqueAt;
+  const double cfm = 1.0 / (stiffness * (h + kToneDamping_s));
+  const std::array<Vec3, 3> axes = {frame * Vec3::UnitX(), frame * Vec3::UnitY(), frame * Vec3::UnitZ()};
+  for (std::size_t i = 0; i < 3; ++i) {
+    set_axis(motor_, i, axes[i]);
+    dJointSetAMotorParam(motor_, suffixed(dParamVel, i), -stiffness * error.dot(axes[i]) * cfm);
+    dJointSetAMotorParam(motor_, suffixed(dParamFMax, i), share * torque_);
+    dJointSetAMotorParam(motor_, suffixed(dParamCFM, i), cfm);
+  }
+}
+
 void apply_damping(const Model& model, const ModelJoint& joint, double k) {
   const Vec3 omega = relative_omega(model, joint);
   const double speed = omega.norm();

@@ -63,6 +63,27 @@ class ActiveLimit {
   dJointID motor_ = nullptr;
 };
 
+/// Muscle tone of one joint: a spring and damper towards the start pose, implicit and capped by the torque
+/// that a man's joint can give. Beyond Era et al.: who is hit stiffens first and then gives way.
+class Tone {
+ public:
+  /// `strength`: torques relative to a man of 73 kg and 1.741 m. Measured from the bodies' present
+  /// orientations.
+  Tone(OdeWorld& world, const Model& model, const ModelJoint& joint, double strength);
+
+  /// `share` of the joint's torque, 0 to 1.
+  void prepare(double h, double share);
+  /// From now on the present pose is held.
+  void capture();
+
+ private:
+  const Model& model_;
+  const ModelJoint& joint_;
+  double torque_;
+  Quat parent_from_child_;  // to be held
+  dJointID motor_ = nullptr;
+};
+
 /// Joint damping: -k I omega on the child, the opposite on the parent; I of the lighter of the two.
 void apply_damping(const Model& model, const ModelJoint& joint, double k);
 

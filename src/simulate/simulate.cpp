@@ -23,7 +23,6 @@ struct Stepping {
   int calm_ticks = 8;
   Reach reach{0.02, 1.5};
   double max_correcting_speed = 0.3;  // m/s, of contacts
-  double damping = 10.0;              // 1/s
   bool sparse_friction = true;
 };
 
@@ -43,6 +42,11 @@ constexpr double kRunaway = 100.0;        // m/s
 constexpr double kRestSpeed = 0.02;       // m/s
 constexpr double kRestTurning = 0.1;      // rad/s
 constexpr double kRestSpan_s = 0.25;
+constexpr double kSlowSpeed = 0.2;    // m/s, and
+constexpr double kSlowTurning = 1.0;  // rad/s: for kSlowSpan_s the body settles into the pose it has
+constexpr double kSlowSpan_s = 0.15;
+constexpr double kSettleRamp_s = 0.5;
+constexpr double kSettleShare = 0.5;    // of the tone
 constexpr double kTouchDepth = 0.0002;  // m: the ball starts touching
 
 struct Diverged {
@@ -58,10 +62,8 @@ Stepping stepping_of(const SimulationSettings& settings) {
     s.base_ticks = s.calm_ticks = 1;
     s.reach = {std::max(0.25, 120.0 * s.tick_s), 0.0};
     s.max_correcting_speed = 1.0;
-    s.damping = 0.0;
     s.sparse_friction = false;
   }
-  s.damping = settings.damping.value_or(s.damping);
   return s;
 }
 
@@ -92,11 +94,15 @@ class Simulation {
     collision_.accept_overlaps();
     passive_.reserve(model_.joints().size());
     active_.reserve(model_.joints().size());
+    tone_.reserve(model_.joints().size());
     for (const ModelJoint& joint : model_.joints()) {
       passive_.emplace_back(world_, model_, joint, settings.limits);
       active_.emplace_back(world_, model_, joint, settings.active, settings.active_k,
                            thresholds[index(joint.joint)]);
     }
+    // Torques grow with weight and height.
+    const double strength = tone_of(settings) * body.mass_kg * body.height_m / (73.0 * 1.741);
+    for (const ModelJoint& joint : model_.joints()) tone_.emplace_back(world_, model_, joint, strength);
     set_erp(base_h());
   }
 
@@ -108,6 +114,7 @@ class Simulation {
   bool projecting() const { return settings_.limits == Limits::edges; }
 
   void start_scene(Diagnostics& diagnostics);
+  Vec3 aim(Diagnostics& diagnostics) const;
   void start_ball(Diagnostics& diagnostics);
   void start_impulse();
   void set_erp(double h);
@@ -119,6 +126,7 @@ class Simulation {
   std::vector<double> joint_excesses() const;
   double worst_separation() const;
   double worst_joint_speed() const;
+  double tone_share() const;
   double push_work(double h) const;
   double prop_energy() const;
   void save();
@@ -137,6 +145,7 @@ class Simulation {
   Recorder recorder_;
   std::vector<PassiveLimit> passive_;
   std::vector<ActiveLimit> active_;
+  std::vector<Tone> tone_;
   std::vector<bool> all_rows_;
   dBodyID ball_ = nullptr;
   Mat3 ball_inertia_ = Mat3::Zero();
@@ -144,7 +153,8 @@ class Simulation {
   std::vector<RigidState> saved_;
   long ticks_ = 0;
   int calm_steps_ = 0;
-  double still_s_ = 0.0;
+  double still_s_ = 0.0, slow_s_ = 0.0;
+  std::optional<double> settling_since_s_;
   bool resting_ = false;
   double erp_h_ = 0.0;
   Trajectory trajectory_;
@@ -165,16 +175,37 @@ void Simulation::set_erp(double h) {
   }
 }
 
-void Simulation::start_ball(Diagnostics& diagnostics) {
-  const RigidState target = read_state(model_.bodies()[model_.body_of(scene_.target)].id);
-  const double reach = 3.0;
-  const Vec3 start = target.position - reach * scene_.direction;
-  const auto touch = collision_.first_touch(start, scene_.direction, scene_.ball_radius_m, reach);
-  const double distance = touch ? touch->distance + kTouchDepth : reach;
-  if (touch && touch->segment != scene_.target)
+/// Where the ball's centre is when it first touches the body. Aimed at the target's centre; where another
+/// segment is in the way the aim moves away from it, by at most the ball's radius.
+Vec3 Simulation::aim(Diagnostics& diagnostics) const {
+  constexpr double kReach = 3.0;
+  constexpr int kTries = 12;
+  const Vec3& along = scene_.direction;
+  const auto centre = [&](Segment s) {
+    return vec3(dBodyGetPosition(model_.bodies()[model_.body_of(s)].id));
+  };
+  const Vec3 target = centre(scene_.target);
+  Vec3 aside = Vec3::Zero();
+  std::optional<Segment> obstacle;
+  for (int i = 0; i <= kTries; ++i) {
+    const Vec3 start = target + scene_.ball_radius_m * i / kTries * aside - kReach * along;
+    const auto touch = collision_.first_touch(start, along, scene_.ball_radius_m, kReach);
+    if (touch && touch->segment == scene_.target) return start + (touch->distance + kTouchDepth) * along;
+    if (i > 0 || !touch) continue;
+    obstacle = touch->segment;
+    const Vec3 away = target - centre(*obstacle);
+    aside = (away - along.dot(away) * along).normalized();
+  }
+  const Vec3 start = target - kReach * along;
+  const auto touch = collision_.first_touch(start, along, scene_.ball_radius_m, kReach);
+  if (obstacle)
     diagnostics.warn(std::string(name(scene_.target)),
-                     fmt::format("the ball meets the {} first", name(touch->segment)));
-  const Vec3 at = start + distance * scene_.direction;
+                     fmt::format("the ball meets the {} first", name(*obstacle)));
+  return start + (touch ? touch->distance + kTouchDepth : kReach) * along;
+}
+
+void Simulation::start_ball(Diagnostics& diagnostics) {
+  const Vec3 at = aim(diagnostics);
   ball_ = dBodyCreate(world_.id());
   dMass mass;
   dMassSetSphereTotal(&mass, scene_.ball_mass_kg, scene_.ball_radius_m);
@@ -210,17 +241,25 @@ void Simulation::start_scene(Diagnostics& diagnostics) {
 }
 
 void Simulation::add_forces(double h) {
-  const double max_gain = kMaxExplicitGain / h;
+  const double damping = std::min(damping_of(settings_), kMaxExplicitGain / h);
+  const double tone = tone_share();
   for (std::size_t j = 0; j < model_.joints().size(); ++j) {
     passive_[j].prepare(h, stepping_.reach, all_rows_[j]);
     active_[j].prepare(time_s() >= settings_.active_delay_s);
-    if (stepping_.damping > 0.0)
-      apply_damping(model_, model_.joints()[j], std::min(stepping_.damping, max_gain));
+    tone_[j].prepare(h, tone);
+    if (damping > 0.0) apply_damping(model_, model_.joints()[j], damping);
   }
   if (scene_.kind == SceneKind::push && time_s() < scene_.push_duration_s) {
     const Vec3 force = scene_.push_force_n * scene_.direction;
     dBodyAddForce(model_.bodies()[model_.body_of(scene_.target)].id, force.x(), force.y(), force.z());
   }
+}
+
+/// Full at the blow, gone after the fade, back in part once the body lies still.
+double Simulation::tone_share() const {
+  if (settling_since_s_) return kSettleShare * std::min(1.0, (time_s() - *settling_since_s_) / kSettleRamp_s);
+  const double left = std::clamp(1.0 - time_s() / settings_.tone_fade_s, 0.0, 1.0);
+  return left * left * (3.0 - 2.0 * left);
 }
 
 double Simulation::push_work(double h) const {
@@ -353,11 +392,19 @@ void Simulation::accept(int ticks, const std::vector<double>& excesses, double s
 }
 
 void Simulation::watch_rest(int ticks) {
-  bool still = true;
-  for (const ModelBody& body : model_.bodies())
-    still = still && vec3(dBodyGetLinearVel(body.id)).norm() < kRestSpeed &&
-            vec3(dBodyGetAngularVel(body.id)).norm() < kRestTurning;
-  still_s_ = still ? still_s_ + stepping_.tick_s * ticks : 0.0;
+  double speed = 0.0;
+  double turning = 0.0;
+  for (const ModelBody& body : model_.bodies()) {
+    speed = std::max(speed, vec3(dBodyGetLinearVel(body.id)).norm());
+    turning = std::max(turning, vec3(dBodyGetAngularVel(body.id)).norm());
+  }
+  const double h = stepping_.tick_s * ticks;
+  slow_s_ = speed < kSlowSpeed && turning < kSlowTurning ? slow_s_ + h : 0.0;
+  if (slow_s_ > kSlowSpan_s && !settling_since_s_ && time_s() > settings_.tone_fade_s) {
+    settling_since_s_ = time_s();
+    for (Tone& tone : tone_) tone.capture();
+  }
+  still_s_ = speed < kRestSpeed && turning < kRestTurning ? still_s_ + h : 0.0;
   if (still_s_ < kRestSpan_s || resting_) return;
   resting_ = true;
   recorder_.rest(time_s() - still_s_);
@@ -424,6 +471,13 @@ std::optional<Error> refuse(const SimulationSettings& settings, const Scene& sce
 }
 
 }  // namespace
+
+double tone_of(const SimulationSettings& settings) {
+  return settings.tone.value_or(settings.fixed_hz > 0.0 ? 0.0 : 0.3);
+}
+double damping_of(const SimulationSettings& settings) {
+  return settings.damping.value_or(settings.fixed_hz > 0.0 ? 0.0 : 10.0);
+}
 
 Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMotion& range,
                                   const StartState& start, const Scene& scene,

@@ -19,9 +19,13 @@ enum class SceneKind { ball, push, impulse };
 struct SimulationSettings {
   Limits limits = Limits::edges;
   Active active = Active::implicit;
-  double active_k = 15.0;         // 1/s; Era et al. eq. (1)
-  double active_delay_s = 0.0;    // reaction time of the active restriction
-  std::string active_file;        // thresholds; empty: assets/limits/active.toml
+  double active_k = 15.0;       // 1/s; Era et al. eq. (1)
+  double active_delay_s = 0.0;  // reaction time of the active restriction
+  std::string active_file;      // thresholds; empty: assets/limits/active.toml
+  /// 0 limp .. 1: share of a man's joint torques that hold the start pose at first; default 0.3 with adaptive
+  /// steps, 0 with fixed ones.
+  std::optional<double> tone;
+  double tone_fade_s = 0.6;       // until it has gone
   std::optional<double> damping;  // joint damping, 1/s; default 10 with adaptive steps, 0 with fixed ones
   double fixed_hz = 0.0;          // 0: adaptive steps; else the frozen yardstick at that rate
   double duration_s = 3.0;        // of the simulated part
@@ -43,6 +47,10 @@ struct Scene {
   double push_duration_s = 0.2;
   double impulse_n_s = 30.0;  // impulse: momentum given to the target at once
 };
+
+/// The tone and damping in force.
+double tone_of(const SimulationSettings& settings);
+double damping_of(const SimulationSettings& settings);
 
 /// Segments at time 0 and their velocities (zero unless the body starts from motion).
 struct StartState {

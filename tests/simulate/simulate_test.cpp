@@ -230,6 +230,42 @@ TEST(Simulate, TheBallStartsTouchingTheTargetAndPushesItAlong) {
   EXPECT_NEAR(result.figures.momentum_n_s, 30.0, 1e-12);
 }
 
+TEST(Simulate, ToneHoldsTheBodyUpAtFirstAndThenGivesWay) {
+  const StandingMan man;
+  SimulationSettings limp;
+  SimulationSettings toned;
+  limp.tone = 0.0;
+  toned.tone = 0.6;
+  const auto sack = run(man, still(), limp);
+  const auto person = run(man, still(), toned);
+  const auto head_height = [](const SimulationResult& result, std::size_t frame) {
+    return result.trajectory.frames[frame][index(Segment::head)].translation.y();
+  };
+  EXPECT_GT(head_height(person, 18), 1.4) << "0.3 s after the start";
+  EXPECT_LT(head_height(sack, 18), head_height(person, 18));
+  EXPECT_LT(head_height(person, 180), 0.8) << "tone goes";
+  EXPECT_EQ(person.limits.over_1deg, 0);
+  EXPECT_LT(person.figures.energy_gain_max_j, 6.0);
+}
+
+TEST(Simulate, TheAimMovesAwayFromAnArmInTheWay) {
+  const StandingMan man;
+  Scene scene;
+  scene.target = Segment::head;
+  scene.direction = Vec3::UnitZ();  // from the left
+  SimulationSettings settings;
+  settings.duration_s = 0.1;
+  StartState start;
+  start.segments = man.segments;
+  Diagnostics diagnostics;
+  ASSERT_TRUE(simulate(man.body, man.range, start, scene, settings, diagnostics));
+  EXPECT_TRUE(diagnostics.warnings().empty()) << diagnostics.warnings()[0].what;
+  scene.target = Segment::pelvis;  // behind the hanging arm: no way round
+  ASSERT_TRUE(simulate(man.body, man.range, start, scene, settings, diagnostics));
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("first"), std::string::npos);
+}
+
 TEST(Simulate, AFallenBodyComesToRestAndIsHeld) {
   const StandingMan man;
   Scene scene;
