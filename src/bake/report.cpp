@@ -162,7 +162,8 @@ Json simulation_json(const SimulationFigures& figures) {
 Json clip_json(const BakeSettings& settings, const BakeOutcome& outcome, const ReducedClip& reduced) {
   Json json;
   json["frames"] = outcome.clip.frames.size();
-  json["resample_position_max_m"] = outcome.resample_error.position_max_m;
+  json["resample_position_max_m"] = outcome.resample_error.position_single_bones_max_m;
+  json["resample_position_shared_bends_max_m"] = outcome.resample_error.position_max_m;
   json["resample_rotation_max_deg"] = outcome.resample_error.rotation_max_deg;
   json["keys"] = reduced.keys;
   json["keys_error_max_m"] = reduced.error_m;

@@ -43,6 +43,7 @@ class Collision {
   /// Overlaps of the present pose that are no contact: shapes that fit a character may overlap at the start.
   void accept_overlaps();
   Contacts find() const;
+  bool is_floor(std::size_t pair) const { return pairs_[pair].kind == PairKind::floor; }
   /// Creates the contact joints of a step.
   void touch(const Contacts& contacts, const ContactSettings& settings) const;
   /// Where a sphere that comes along `direction` first touches the body, and which segment; nothing if it

@@ -31,6 +31,8 @@ constexpr double kCalmSpeed = 3.0;             // rad/s, of every joint
 constexpr double kWorstExcess = radians(0.5);  // above: the step is rejected
 constexpr double kWorstSeparation = 0.006;     // m
 constexpr double kWorstSinking = 0.008;        // m, growth of a pair's depth in one step
+constexpr double kFloorDepth = 0.005;           // m: below this in the floor
+constexpr double kFloorSinking = 0.002;         // m: a pair may grow only so much
 constexpr double kWorstMiss =
     radians(0.3);  // beyond an edge without a row: the step is taken again with all rows
 constexpr double kErp = 0.8;
@@ -121,6 +123,7 @@ class Simulation {
   void add_forces(double h);
   void advance(int ticks);
   bool try_step(int ticks);
+  bool sinks(const Contacts& next) const;
   void take_step(double h);
   void accept(int ticks, const std::vector<double>& excesses, double separation, Contacts next);
   std::vector<double> joint_excesses() const;
@@ -338,6 +341,15 @@ void Simulation::take_step(double h) {
   }
 }
 
+bool Simulation::sinks(const Contacts& next) const {
+  for (std::size_t p = 0; p < next.depth.size(); ++p) {
+    const double growth = next.depth[p] - contacts_.depth[p];
+    if (growth > kWorstSinking) return true;
+    if (collision_.is_floor(p) && next.depth[p] > kFloorDepth && growth > kFloorSinking) return true;
+  }
+  return false;
+}
+
 bool Simulation::try_step(int ticks) {
   const double h = stepping_.tick_s * ticks;
   save();
@@ -353,10 +365,7 @@ bool Simulation::try_step(int ticks) {
   }
   if (projecting()) model_.project();
   Contacts next = collision_.find();
-  double sinking = 0.0;
-  for (std::size_t p = 0; p < next.depth.size(); ++p)
-    sinking = std::max(sinking, next.depth[p] - contacts_.depth[p]);
-  if (can_halve && sinking > kWorstSinking) {
+  if (can_halve && sinks(next)) {
     restore();
     return false;
   }
