@@ -7,7 +7,7 @@ import zlib
 
 SIDE = 256
 TONES = 32
-LIGHTEST, DARKEST = (255, 255, 255), (196, 172, 148)
+LIGHTEST, DARKEST = (255, 255, 255), (200, 176, 152)
 
 
 def _noise(generator, across, along):
@@ -35,9 +35,9 @@ def _darkness():
     broad = _noise(generator, 4, 2)
 
     def darkness(u, v):
-        rings = 0.5 + 0.5 * math.sin(2 * math.pi * (6 * u + 1.6 * drift(u, v)))
+        rings = 0.5 + 0.5 * math.sin(2 * math.pi * (4 * u + 1.6 * drift(u, v)))
         fine = max(0.0, pores(u, v) - 0.72) * 2.2
-        return 0.34 * rings**3 + 0.30 * fibre(u, v) + 0.25 * fine + 0.18 * broad(u, v)
+        return 0.24 * rings**3 + 0.30 * fibre(u, v) + 0.25 * fine + 0.18 * broad(u, v)
 
     return darkness
 
