@@ -1,5 +1,7 @@
 #include "simulate/collision.h"
 
+#include <ode/ode.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -118,10 +120,11 @@ Contacts Collision::find() const {
     const int most = a.box || b.box ? kMaxBoxContacts : kMaxContacts;
     const int count = dCollide(a.geom, b.geom, most, buffer.data(), sizeof(dContactGeom));
     for (int i = 0; i < count; ++i) {
-      buffer[i].depth -= pair.accepted;
-      if (buffer[i].depth <= 0.0) continue;
-      found.points.push_back({p, buffer[i]});
-      found.depth[p] = std::max(found.depth[p], static_cast<double>(buffer[i].depth));
+      const dContactGeom& touch = buffer[i];
+      const double depth = touch.depth - pair.accepted;
+      if (depth <= 0.0) continue;
+      found.points.push_back({p, vec3(touch.pos), vec3(touch.normal), depth, touch.g1, touch.g2});
+      found.depth[p] = std::max(found.depth[p], depth);
     }
     if (pair.kind == PairKind::self)
       found.self_penetration = std::max(found.self_penetration, found.depth[p]);
@@ -140,24 +143,27 @@ void Collision::touch(const Contacts& contacts, const ContactSettings& settings)
     nth = point.pair == last_pair ? nth + 1 : 0;
     last_pair = point.pair;
     dContact contact{};
-    contact.geom = point.geometry;
+    contact.geom.depth = point.depth;
+    contact.geom.g1 = point.a;
+    contact.geom.g2 = point.b;
+    Eigen::Map<Vec3>(contact.geom.pos) = point.place;
+    Eigen::Map<Vec3>(contact.geom.normal) = point.normal;
     dSurfaceParameters& surface = contact.surface;
     surface.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
     surface.soft_erp = kSoftErp;
     surface.soft_cfm = kSoftCfm;
     surface.mu = settings.friction;
-    const dBodyID a = dGeomGetBody(point.geometry.g1);
-    const dBodyID b = dGeomGetBody(point.geometry.g2);
+    const dBodyID a = dGeomGetBody(point.a);
+    const dBodyID b = dGeomGetBody(point.b);
     if (settings.sparse_friction) {
       if (pairs_[point.pair].kind == PairKind::floor) {
         // Two rows at the first two contacts of a pair hold it; the others only carry.
         if (nth >= kFullFrictionContacts) surface.mu = 0.0;
       } else {
         // One row along the slip.
-        const Vec3 normal = vec3(point.geometry.normal);
-        Vec3 slip = velocity_at(a, point.geometry.pos) - velocity_at(b, point.geometry.pos);
-        slip -= normal.dot(slip) * normal;
-        if (slip.norm() < 1e-6) slip = normal.unitOrthogonal();
+        Vec3 slip = velocity_at(a, contact.geom.pos) - velocity_at(b, contact.geom.pos);
+        slip -= point.normal.dot(slip) * point.normal;
+        if (slip.norm() < 1e-6) slip = point.normal.unitOrthogonal();
         slip.normalize();
         surface.mode |= dContactAxisDep | dContactFDir1;
         surface.mu2 = 0.0;

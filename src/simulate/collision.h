@@ -22,7 +22,10 @@ struct ContactSettings {
 struct Contacts {
   struct Point {
     std::size_t pair = 0;
-    dContactGeom geometry{};
+    Vec3 place = Vec3::Zero();   // world, m
+    Vec3 normal = Vec3::Zero();  // unit, into the first shape
+    double depth = 0.0;          // m
+    dGeomID a = nullptr, b = nullptr;
   };
   std::vector<Point> points;
   std::vector<double> depth;  // deepest point of each pair, m; 0 where apart

@@ -1,6 +1,7 @@
 #include "simulate/figures.h"
 
 #include <fmt/format.h>
+#include <ode/ode.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,7 @@
 #include "simulate/limits.h"
 
+#include <ode/ode.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,7 @@
 #include "simulate/model.h"
 
+#include <ode/ode.h>
+
 namespace ukemi {
 
 RigidState read_state(dBodyID body) {

@@ -1,5 +1,7 @@
 #include "simulate/ode_world.h"
 
+#include <ode/ode.h>
+
 #include <cstdarg>
 #include <cstdio>
 #include <mutex>

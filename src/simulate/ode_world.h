@@ -2,11 +2,10 @@
 // threw is never touched again (destroying it would abort), so its memory is given up.
 #pragma once
 
-#include <ode/ode.h>
-
 #include <stdexcept>
 
 #include "base/math.h"
+#include "simulate/ode_handles.h"
 
 namespace ukemi {
 
@@ -38,8 +37,8 @@ class OdeWorld {
   bool poisoned_ = false;
 };
 
-inline Vec3 vec3(const dReal* v) { return {v[0], v[1], v[2]}; }
-inline Quat quat(const dReal* q) { return {q[0], q[1], q[2], q[3]}; }
+inline Vec3 vec3(const double* v) { return {v[0], v[1], v[2]}; }
+inline Quat quat(const double* q) { return {q[0], q[1], q[2], q[3]}; }
 void set_quaternion(dBodyID body, const Quat& q);
 
 }  // namespace ukemi

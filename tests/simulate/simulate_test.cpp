@@ -1,5 +1,7 @@
 #include "simulate/simulate.h"
 
+#include <ode/ode.h>
+
 #include <optional>
 #include <random>
 
