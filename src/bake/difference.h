@@ -12,7 +12,7 @@ namespace ukemi {
 
 struct DifferenceSettings {
   std::optional<std::string> clip;  // of both files; default: the last of each, where a bake puts its clip
-  double tolerance_deg = 0.1;
+  double tolerance_deg = 1.0;       // key reduction turns short bones by some tenths of a degree
   double tolerance_mm = 1.0;
 };
 

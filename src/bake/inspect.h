@@ -17,12 +17,22 @@ std::string_view name(Verdict verdict);  // "humanoid", "not-humanoid", "malform
 /// 0 humanoid, 1 not a humanoid, 2 malformed.
 int exit_status(Verdict verdict);
 
-/// How far poses lie outside the range of motion, over all joints that move.
+/// Bones do not tell how the segments inside them are rolled about their length; a choice of rolls for a
+/// whole clip is one reading of it.
+enum class Rolls {
+  canonical,    // in every frame like a human body (canonical_segments_of)
+  first_frame,  // like a human body in the first frame, from then on fixed to the nodes, as a bake leaves
+                // them
+};
+std::string_view name(Rolls rolls);  // "canonical", "first-frame"
+
+/// How far poses lie outside the range of motion, over all joints that move, in the reading that fits better.
 struct RomFigures {
   double over_1deg_fraction = 0.0;
   double over_5deg_fraction = 0.0;
   double excess_max_deg = 0.0;
   std::optional<Joint> worst_joint;
+  Rolls rolls = Rolls::canonical;
 };
 
 struct ClipInspection {
@@ -48,7 +58,8 @@ struct InspectSettings {
   std::string region = "human";
 };
 
-/// Frames per second of an animation: the file's, or that of its closest keys (a reduced clip leaves keys out).
+/// Frames per second of an animation: the file's, or that of its closest keys (a reduced clip leaves keys
+/// out).
 double native_rate(const Animation& animation);
 
 RomFigures rom_figures(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,

@@ -88,17 +88,12 @@ double position_jump(const Character& character, const BakeOutcome& outcome) {
   return largest;
 }
 
-/// Difference of the segments' velocities over the first frame from those of the clip, the hit segment left
-/// out.
+/// Difference of the pelvis's velocity over the first frame from that of the clip.
 double velocity_jump(const BakeOutcome& outcome) {
+  constexpr int pelvis = index(Segment::pelvis);
   const Trajectory& trajectory = outcome.simulation.trajectory;
-  double largest = 0.0;
-  for (int i = 0; i < kSegmentCount; ++i) {
-    if (segment_at(i) == outcome.scene.target) continue;
-    const Vec3 moved = trajectory.frames[1][i].translation - trajectory.frames[0][i].translation;
-    largest = std::max(largest, (moved * trajectory.fps - outcome.start.state.linear_velocity[i]).norm());
-  }
-  return largest;
+  const Vec3 moved = trajectory.frames[1][pelvis].translation - trajectory.frames[0][pelvis].translation;
+  return (moved * trajectory.fps - outcome.start.state.linear_velocity[pelvis]).norm();
 }
 
 Json impact_json(const Character& character, const BakeSettings& settings, const BakeOutcome& outcome) {

@@ -16,8 +16,8 @@ namespace ukemi {
 ///    with canonical rolls; it holds for the whole clip.
 /// 2. impact.position_jump_m: largest distance of a joint in the clip's first frame from where the clip it
 /// starts from
-///    has it. velocity_jump_m_s: largest difference of a joint's velocity over the first frame from that
-///    clip's, the hit segment left out. Both null for a still start.
+///    has it. velocity_jump_m_s: difference of the pelvis's velocity over the first frame from that clip's,
+///    the blow's share included. Both null for a still start.
 /// 3. clip.jerk_max_deg_s3 is the largest second difference of a node's local angular velocity between
 /// frames.
 /// 4. timings_s.realtime_factor is the clip's length over the total.

@@ -1,5 +1,6 @@
 #include "humanoid/reference.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "humanoid/figure.h"
@@ -19,14 +20,33 @@ namespace {
 
 // ------------------------------------------------------------------------------------------
 
-/// The up axis of a motion, from the mean of where the head is above the feet.
+/// How far the lowest joint of a motion moves along `up`, file units: little along the true one, for the floor
+/// carries the figure, whether it stands or lies.
+double spread_of_lowest(const std::vector<Figure>& figures, const Vec3& up) {
+  double least = 1e300, most = -1e300;
+  for (const Figure& figure : figures) {
+    double lowest = 1e300;
+    for (const Vec3& origin : figure.origin) lowest = std::min(lowest, origin.dot(up));
+    least = std::min(least, lowest);
+    most = std::max(most, lowest);
+  }
+  return most - least;
+}
+
+/// The up axis of a motion: where the head is above the feet, in the mean or, for a figure that spends most of
+/// the time on the ground, at the beginning.
 Vec3 up_of_motion(const Character& character, const Humanoid& humanoid) {
-  Vec3 sum = Vec3::Zero();
+  std::vector<Figure> figures;
   for (const double t : sample_times(character.animations[0], 100))
-    sum += Figure(character, humanoid, sample(character.skeleton, character.animations[0], t))
-               .rise()
-               .normalized();
-  return dominant_axis(sum);
+    figures.emplace_back(character, humanoid, sample(character.skeleton, character.animations[0], t));
+  const auto mean_rise = [&](std::size_t count) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < count; ++i) sum += figures[i].rise().normalized();
+    return dominant_axis(sum);
+  };
+  const Vec3 mean = mean_rise(figures.size());
+  const Vec3 first = mean_rise((figures.size() + 9) / 10);
+  return spread_of_lowest(figures, first) < spread_of_lowest(figures, mean) ? first : mean;
 }
 
 Pose turned(const Character& character, Pose pose, const Quat& rotation) {

@@ -57,14 +57,16 @@ void Program::SetUp() {
 
 void Program::TearDown() { fs::remove_all(folder); }
 
-Ran Program::run(const std::vector<std::string>& arguments) {
-  const fs::path out = folder.string() + ".out";
+Ran Program::run(const std::vector<std::string>& arguments, const fs::path& given_out) {
+  const fs::path out = given_out.empty() ? fs::path(folder.string() + ".out") : given_out;
   const fs::path err = folder.string() + ".err";
   Ran result;
   result.status = spawn_and_wait(arguments, folder, out, err);
-  result.out = content_of(out);
   result.err = content_of(err);
-  fs::remove(out);
+  if (given_out.empty()) {
+    result.out = content_of(out);
+    fs::remove(out);
+  }
   fs::remove(err);
   return result;
 }

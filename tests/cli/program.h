@@ -20,8 +20,8 @@ class Program : public testing::Test {
   void SetUp() override;
   void TearDown() override;
 
-  /// The program with these arguments, in `folder`.
-  Ran run(const std::vector<std::string>& arguments);
+  /// The program with these arguments, in `folder`; stdout goes to `out` where one is given.
+  Ran run(const std::vector<std::string>& arguments, const std::filesystem::path& out = {});
   /// Names of everything in `folder`, sorted.
   std::vector<std::string> files() const;
   void write(const std::string& name, const std::string& content) const;

@@ -106,6 +106,18 @@ TEST_F(Refusal, OfOutputsThatCannotBe) {
                  "exclude each other");
 }
 
+TEST_F(Refusal, OfAStdoutThatIsFull) {
+  const Ran result = run({"--help"}, "/dev/full");
+  EXPECT_EQ(result.status, kCannotWrite);
+  EXPECT_NE(result.err.find("cannot write to stdout"), std::string::npos) << result.err;
+}
+
+TEST_F(Refusal, OfARegionFileNamesTheLine) {
+  write("region.toml", "format = 1\n\n[joint.knee_l]\npolygon = \"none\"\n");
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--region", "region.toml"}, kMustChange,
+                 "region.toml:");
+}
+
 TEST_F(Refusal, OfStartsThatContradictEachOther) {
   expect_refused({"bake", "mannequin", "-o", "a.glb", "--at", "0.5"}, kMustChange, "--at needs a clip");
   expect_refused({"bake", "mannequin", "-o", "a.glb", "--clip", "walk", "--pose", "rest"}, kMustChange,
