@@ -123,7 +123,8 @@ void declare_method(Options& options, BakeSettings& settings) {
 void declare_clip(Options& options, BakeSettings& settings) {
   options.group("clip");
   options.number("--duration", "S", settings.simulation.duration_s, Range{0.0, 60.0, true}, "length at most");
-  options.on_off("until-rest", settings.until_rest, "end the clip once everything rests");
+  options.on_off("until-rest", settings.until_rest, "end the clip once everything rests",
+                 "keep the still tail, up to --duration");
   options.number("--hold", "S", settings.hold_s, Range{0.0, 60.0}, "kept after that");
   options.number("--fps", "N", settings.simulation.fps, Range{1.0, 1000.0}, "frames per second");
   options.choice(

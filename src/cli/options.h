@@ -54,8 +54,7 @@ class Options {
   void paths(const std::string& names, std::vector<std::filesystem::path>& target, const std::string& help);
   void flag(const std::string& names, bool& target, const std::string& help);
   /// --name and --no-name.
-  void on_off(const std::string& name, bool& target, const std::string& help,
-              const std::string& opposite = "the opposite");
+  void on_off(const std::string& name, bool& target, const std::string& help, const std::string& opposite);
   /// One of `words`; `take` gets its index. `chosen` is the default.
   void choice(const std::string& names, const std::vector<std::string>& words, std::size_t chosen,
               std::function<void(std::size_t)> take, const std::string& help);

@@ -157,7 +157,7 @@ TEST_F(Help, TellsDefaultsAndLegalRanges) {
   for (const char* part : {"--fps N", "[default 60; 1 to 1000]", "[default 3; above 0, at most 60]",
                            "[default medicine-ball]", "[default chest]", "[default: found out]"})
     EXPECT_NE(text.find(part), std::string::npos) << part;
-  for (const char* later : {"--lead", "--tone", "--recover", "--append", "--additive"})
+  for (const char* later : {"--lead", "--recover", "--append", "--additive"})
     EXPECT_EQ(text.find(later), std::string::npos) << later;
 }
 
