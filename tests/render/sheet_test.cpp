@@ -55,9 +55,9 @@ int differing(const Picture& a, const Picture& b, int tolerance, Picture& differ
       most = std::max(most, std::abs(a.rgba[i + channel] - b.rgba[i + channel]));
     const bool differs = most > tolerance;
     count += differs;
-    difference.rgba[i] = differs ? 255 : static_cast<std::uint8_t>(a.rgba[i] / 2 + 127);
+    difference.rgba[i] = static_cast<std::uint8_t>(differs ? 255 : a.rgba[i] / 2 + 127);
     for (const int channel : {1, 2})
-      difference.rgba[i + channel] = differs ? 0 : static_cast<std::uint8_t>(a.rgba[i + channel] / 2 + 127);
+      difference.rgba[i + channel] = static_cast<std::uint8_t>(differs ? 0 : a.rgba[i + channel] / 2 + 127);
   }
   return count;
 }
