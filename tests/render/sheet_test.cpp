@@ -176,6 +176,24 @@ TEST(Sheet, is_seen_across_the_blow_running_from_left_to_right) {
   }
 }
 
+TEST(Sheet, shows_the_front_of_the_figure) {
+  Scene scene;
+  Humanoid humanoid;
+  humanoid.segments[index(Segment::pelvis)].chain = {0};
+  // The boxy figure looks along +z; segments have x in front.
+  humanoid.node_from_segment[index(Segment::pelvis)] = Quat(Eigen::AngleAxisd(-0.5 * kPi, Vec3::UnitY()));
+  scene.shot.humanoid = &humanoid;
+  const Figure figure(scene.shot, false);
+  EXPECT_LT((figure.facing(0) - Vec3::UnitZ()).norm(), 1e-12);
+  for (const Vec3& blow : {Vec3(0, 0, -1), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)}) {
+    scene.shot.impact_direction = blow;
+    const Camera camera = set_stage(figure, scene.shot, {figure.joints(0)}, {{0, ""}}, 1.0, 0.1).stage.camera;
+    const Vec3 to_camera = camera.world_from_camera * Vec3::UnitZ();
+    EXPECT_GT(to_camera.z(), 0.4) << "blow " << blow.transpose();
+    EXPECT_LT(std::abs(to_camera.dot(blow)), 0.6) << "not along the blow " << blow.transpose();
+  }
+}
+
 TEST(Sheet, of_an_empty_clip_is_an_error) {
   Scene scene;
   scene.clip.frames.clear();
