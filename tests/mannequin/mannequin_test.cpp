@@ -1,8 +1,12 @@
 // The built-in character as the stages read it: assets/characters/mannequin.glb and .bvh.
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
 #include <set>
 
 #include "humanoid/humanoid.h"
@@ -15,10 +19,12 @@ namespace {
 constexpr double kHeight = 1.78;
 constexpr double kWalkSpeed = 1.25;  // m/s
 
-Character load(const std::string& file) {
+namespace fs = std::filesystem;
+
+Character load(const std::string& file,
+               const fs::path& folder = fs::path(UKEMI_ASSETS_FOLDER) / "characters") {
   Diagnostics diagnostics;
-  auto character =
-      load_character(std::filesystem::path(UKEMI_ASSETS_FOLDER) / "characters" / file, {}, diagnostics);
+  auto character = load_character(folder / file, {}, diagnostics);
   EXPECT_TRUE(character) << (character ? "" : character.error().message());
   EXPECT_TRUE(diagnostics.warnings().empty()) << diagnostics.warnings().front().what;
   return character ? *character : Character{};
@@ -220,6 +226,57 @@ TEST(Mannequin, BvhWalksLikeTheGlb) {
     }
   }
   EXPECT_GT(compared, 30 * 16);
+}
+
+/// Largest difference of the numbers of two files with the same nodes, vertices and keys; infinite otherwise.
+double difference(const Character& a, const Character& b) {
+  double largest = 0.0;
+  const auto compare = [&](auto one, auto other) {
+    if (one.size() != other.size()) {
+      largest = std::numeric_limits<double>::infinity();
+      return;
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(one.size()); ++i)
+      largest = std::max(largest, std::abs(static_cast<double>(one[i]) - static_cast<double>(other[i])));
+  };
+  compare(std::vector<int>{a.skeleton.size(), static_cast<int>(a.parts.size()),
+                           static_cast<int>(a.animations.size())},
+          std::vector<int>{b.skeleton.size(), static_cast<int>(b.parts.size()),
+                           static_cast<int>(b.animations.size())});
+  if (largest > 0.0) return largest;
+  for (int n = 0; n < a.skeleton.size(); ++n)
+    compare(a.skeleton.nodes[n].rest.translation, b.skeleton.nodes[n].rest.translation);
+  for (std::size_t p = 0; p < a.parts.size(); ++p) {
+    const auto numbers = [](const MeshPart& part) {
+      std::vector<double> all(part.indices.begin(), part.indices.end());
+      for (std::size_t v = 0; v < part.positions.size(); ++v)
+        for (int k = 0; k < 3; ++k) all.insert(all.end(), {part.positions[v][k], part.normals[v][k]});
+      return all;
+    };
+    compare(numbers(a.parts[p]), numbers(b.parts[p]));
+  }
+  for (std::size_t i = 0; i < a.animations.size(); ++i) {
+    const auto numbers = [](const Animation& animation) {
+      std::vector<double> all;
+      for (const Track& track : animation.tracks)
+        all.insert(all.end(), track.values.begin(), track.values.end());
+      return all;
+    };
+    compare(numbers(a.animations[i]), numbers(b.animations[i]));
+  }
+  return largest;
+}
+
+TEST(Mannequin, IsWhatItsToolMakes) {
+  if (std::system("python3 --version > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "left out: python3, which tools/make_mannequin needs, is not installed";
+  std::string folder = (fs::temp_directory_path() / "ukemi_mannequin_XXXXXX").string();
+  ASSERT_NE(mkdtemp(folder.data()), nullptr);
+  const std::string command = "python3 '" UKEMI_TOOLS_FOLDER "/make_mannequin' '" + folder + "' > /dev/null";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  for (const char* file : {"mannequin.glb", "mannequin.bvh"})
+    EXPECT_LT(difference(load(file, folder), load(file)), 1e-4) << file;
+  fs::remove_all(folder);
 }
 
 }  // namespace
