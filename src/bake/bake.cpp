@@ -95,7 +95,7 @@ Status prepare(const Character& character, const BakeSettings& settings, BakeOut
   auto humanoid = map_humanoid(character, settings.humanoid, diagnostics);
   if (!humanoid) return humanoid.error();
   outcome.humanoid = std::move(*humanoid);
-  auto start = start_of(character, outcome.humanoid, settings);
+  auto start = start_of(character, outcome.humanoid, settings, diagnostics);
   if (!start) return start.error();
   outcome.start = std::move(*start);
   auto body = build_body(character, outcome.humanoid, outcome.start.pose, outcome.start.segments,

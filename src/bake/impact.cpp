@@ -16,7 +16,7 @@ namespace ukemi {
 namespace {
 
 constexpr std::int64_t kPresetFormat = 1;
-const std::vector<std::string> kSceneNames = {"ball", "push", "impulse"};
+const std::vector<std::string> kSceneNames = {"ball", "slope", "fall", "push", "impulse", "box"};
 const std::vector<std::string> kDirectionNames = {"front", "back", "left", "right", "above"};
 
 Error usage(std::string what, std::string fix) {
@@ -238,8 +238,8 @@ Result<Segment> parse_segment(std::string_view text) {
 }
 
 Result<SceneKind> parse_scene(std::string_view text) {
-  for (const SceneKind scene : {SceneKind::ball, SceneKind::push, SceneKind::impulse})
-    if (name(scene) == text) return scene;
+  for (std::size_t i = 0; i < kSceneNames.size(); ++i)
+    if (text == kSceneNames[i]) return static_cast<SceneKind>(i);
   return usage(fmt::format("unknown scene '{}'", text), suggestion(text, kSceneNames));
 }
 
@@ -267,6 +267,9 @@ Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelv
   scene.impulse_n_s = momentum;
   scene.push_duration_s = preset->push_duration_s;
   scene.push_force_n = momentum / scene.push_duration_s;
+  scene.fall_height_m = settings.fall_height_m;
+  scene.tip_speed_m_s = settings.tip_speed_m_s;
+  scene.slope_rad = radians(settings.slope_deg);
   return scene;
 }
 

@@ -110,11 +110,16 @@ Json impact_json(const Character& character, const BakeSettings& settings, const
   json["scene"] = name(scene.kind);
   json["from"] = settings.from;
   json["direction"] = numbers(scene.direction);
-  const bool ball = scene.kind == SceneKind::ball;
+  const bool fall = scene.kind == SceneKind::fall;
+  const bool ball =
+      scene.kind == SceneKind::ball || scene.kind == SceneKind::slope || scene.kind == SceneKind::box;
   const bool push = scene.kind == SceneKind::push;
   json["ball_mass_kg"] = ball ? Json(scene.ball_mass_kg) : Json(nullptr);
   json["ball_speed_m_s"] = ball ? Json(scene.ball_speed_m_s) : Json(nullptr);
   json["ball_radius_m"] = ball ? Json(scene.ball_radius_m) : Json(nullptr);
+  json["slope_deg"] = scene.kind == SceneKind::slope ? Json(degrees(scene.slope_rad)) : Json(nullptr);
+  json["fall_height_m"] = fall ? Json(scene.fall_height_m) : Json(nullptr);
+  json["tip_speed_m_s"] = fall ? Json(scene.tip_speed_m_s) : Json(nullptr);
   json["push_force_n"] = push ? Json(scene.push_force_n) : Json(nullptr);
   json["push_duration_s"] = push ? Json(scene.push_duration_s) : Json(nullptr);
   json["floor_height_m"] = outcome.start.floor_m;

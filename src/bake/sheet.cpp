@@ -17,6 +17,14 @@ std::string blow_text(const BakeSettings& settings, const Scene& scene) {
       return fmt::format("{}: {:.0f} N for {:.2f} s", what, scene.push_force_n, scene.push_duration_s);
     case SceneKind::impulse:
       return fmt::format("{}: {:.1f} N s", what, scene.impulse_n_s);
+    case SceneKind::fall:
+      return fmt::format("fall: from {} m, tipped at {} m/s", scene.fall_height_m, scene.tip_speed_m_s);
+    case SceneKind::slope:
+      return fmt::format("{} down a ramp of {:.0f} degrees: {} kg at {} m/s", what, degrees(scene.slope_rad),
+                         scene.ball_mass_kg, scene.ball_speed_m_s);
+    case SceneKind::box:
+      return fmt::format("box of {} m: {} kg at {} m/s", 2.0 * scene.ball_radius_m, scene.ball_mass_kg,
+                         scene.ball_speed_m_s);
     case SceneKind::ball:
       break;
   }
@@ -100,7 +108,10 @@ Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const B
   shot.props = &trajectory.props;
   shot.impact_point = trajectory.impact_point;
   shot.impact_direction = trajectory.impact_direction;
-  shot.title = fmt::format("{}: {} hit from {}", character.name, name(outcome.scene.target), settings.from);
+  shot.title =
+      outcome.scene.kind == SceneKind::fall
+          ? fmt::format("{}: falls away from {}", character.name, settings.from)
+          : fmt::format("{}: {} hit from {}", character.name, name(outcome.scene.target), settings.from);
   shot.notes = figure_lines(settings, outcome);
   return sheet_png(shot, false);
 }

@@ -16,6 +16,10 @@ namespace {
 constexpr double kVelocityStep = 1.0 / 240.0;  // s, to either side
 constexpr double kFloorRate = 30.0;            // samples per second of a clip
 constexpr int kMaxFloorSamples = 600;
+// Faster than any joint or segment of ordinary human motion: the clip jumps there (a T-pose as its first
+// frame).
+constexpr double kFastestSegment = 20.0;  // m/s, of a body 1.75 m tall
+constexpr double kFastestTurning = 60.0;  // rad/s
 
 Error usage(std::string what, std::string fix) {
   return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
@@ -36,6 +40,14 @@ double height_above_floor(const Character& character, const Humanoid& humanoid, 
   return pelvis_height(pose) - pelvis_height(stand_on_floor(character, humanoid, pose));
 }
 
+bool jumps(const StartState& state, double height_m) {
+  for (int i = 0; i < kSegmentCount; ++i)
+    if (state.linear_velocity[i].norm() > kFastestSegment * std::max(1.0, height_m / 1.75) ||
+        state.angular_velocity[i].norm() > kFastestTurning)
+      return true;
+  return false;
+}
+
 /// Central differences of the segments as the nodes have them (their rolls do not jump); one-sided at the
 /// clip's ends.
 void take_velocities(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& animation,
@@ -51,7 +63,8 @@ void take_velocities(const Skeleton& skeleton, const Humanoid& humanoid, const A
   }
 }
 
-Start start_from_clip(const Character& character, const Humanoid& humanoid, std::size_t clip, double at_s) {
+Start start_from_clip(const Character& character, const Humanoid& humanoid, std::size_t clip, double at_s,
+                      Diagnostics& diagnostics) {
   const Animation& animation = character.animations[clip];
   Start start;
   start.name = clip_label(character, clip);
@@ -60,6 +73,11 @@ Start start_from_clip(const Character& character, const Humanoid& humanoid, std:
   start.pose = sample(character.skeleton, animation, animation.start_s + at_s);
   start.floor_m = floor_of(character, humanoid, animation);
   take_velocities(character.skeleton, humanoid, animation, animation.start_s + at_s, start.state);
+  if (jumps(start.state, humanoid.height_m)) {
+    start.state = StartState();
+    diagnostics.warn(start.name,
+                     fmt::format("the clip jumps at {:.3f} s; the body starts at rest there", at_s));
+  }
   return start;
 }
 
@@ -119,7 +137,8 @@ double floor_of(const Character& character, const Humanoid& humanoid, const Anim
   return floor;
 }
 
-Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings) {
+Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings,
+                       Diagnostics& diagnostics) {
   const auto clip = clip_of(character, settings);
   if (!clip) return clip.error();
   Start start;
@@ -129,7 +148,7 @@ Result<Start> start_of(const Character& character, const Humanoid& humanoid, con
     if (!(at_s >= 0.0) || at_s > duration_s + 1e-6)
       return usage(fmt::format("--at {} lies outside the clip '{}'", at_s, clip_label(character, **clip)),
                    fmt::format("give a time from 0 to {:.3f} s", duration_s));
-    start = start_from_clip(character, humanoid, **clip, at_s);
+    start = start_from_clip(character, humanoid, **clip, at_s, diagnostics);
   } else {
     start.name = settings.pose.value_or("stand");
     const auto pose = parse_pose(start.name);

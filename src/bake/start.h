@@ -38,7 +38,8 @@ double floor_of(const Character& character, const Humanoid& humanoid, const Anim
 
 /// The start that the settings ask for. Errors: usage (--pose and --clip together, --at without a clip or
 /// outside it, unknown pose or clip).
-Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings);
+Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings,
+                       Diagnostics& diagnostics);
 
 /// The pose with the whole figure moved by `offset` (world, metres).
 Pose moved(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose, const Vec3& offset);

@@ -41,13 +41,19 @@ void declare_hit(Options& options, BakeSettings& settings) {
                  "in place of the preset's");
   options.number("--ball-radius", "M", settings.ball_radius_m, Range{0.005, 5.0}, "in place of the preset's");
   options.custom(
-      "--scene", "ball|push|impulse",
+      "--scene", "ball|slope|fall|push|impulse|box",
       [&settings](const std::string& text) -> Status {
         if (const auto scene = parse_scene(text); !scene) return scene.error();
         settings.scene = text;
         return Done{};
       },
-      "how the momentum arrives: by a ball, by a force over a time, at once [default: the preset's]");
+      "what happens: a ball flies in, a ball rolls down a ramp, the body is tipped over or dropped, a force "
+      "acts for a time, momentum is given at once, a box slides in; mass, speed and radius (half edge) are "
+      "the ball's [default: the preset's]");
+  options.number("--slope-deg", "DEG", settings.slope_deg, Range{1.0, 60.0}, "slope: of the ramp");
+  options.number("--fall-height", "M", settings.fall_height_m, Range{0.0, 50.0}, "fall: above the floor");
+  options.number("--tip-speed", "M_S", settings.tip_speed_m_s, Range{0.0, 20.0},
+                 "fall: of the centre of mass, away from --from");
 }
 
 void declare_body(Options& options, BakeSettings& settings) {

@@ -95,12 +95,13 @@ void Collision::make_self_pairs() {
         pairs_.push_back({a, b, PairKind::self, 0.0});
 }
 
-void Collision::add_ball(dBodyID ball, double radius) {
-  const dGeomID geom = dCreateSphere(nullptr, radius);
-  dGeomSetBody(geom, ball);
+void Collision::add_prop(dGeomID geom, dBodyID body) {
+  if (body != nullptr) dGeomSetBody(geom, body);
   const std::size_t i = colliders_.size();
-  colliders_.push_back({geom, -1, Segment::pelvis, false});
-  for (std::size_t other = 0; other < i; ++other) pairs_.push_back({other, i, PairKind::prop, 0.0});
+  const bool box = dGeomGetClass(geom) == dBoxClass;
+  colliders_.push_back({geom, -1, Segment::pelvis, box});
+  for (std::size_t other = body == nullptr ? 1 : 0; other < i; ++other)
+    pairs_.push_back({other, i, PairKind::prop, 0.0});
 }
 
 void Collision::accept_overlaps() {
@@ -176,19 +177,18 @@ void Collision::touch(const Contacts& contacts, const ContactSettings& settings)
   }
 }
 
-std::optional<Collision::FirstTouch> Collision::first_touch(const Vec3& start, const Vec3& direction,
-                                                            double radius, double reach) const {
+std::optional<Collision::FirstTouch> Collision::first_touch(dGeomID probe, const Vec3& start,
+                                                            const Vec3& direction, double reach) const {
   constexpr double kStride = 0.002;
-  const dGeomID probe = dCreateSphere(nullptr, radius);
   std::optional<FirstTouch> found;
   const auto touched = [&](double distance) {
     const Vec3 at = start + distance * direction;
     dGeomSetPosition(probe, at.x(), at.y(), at.z());
     dContactGeom contact;
-    for (std::size_t i = 1; i < colliders_.size(); ++i) {
-      if (colliders_[i].body < 0 || !boxes_overlap(probe, colliders_[i].geom)) continue;
-      if (dCollide(probe, colliders_[i].geom, 1, &contact, sizeof contact) > 0) {
-        found = FirstTouch{distance, colliders_[i].segment};
+    for (const Collider& collider : colliders_) {
+      if (collider.body < 0 || !boxes_overlap(probe, collider.geom)) continue;
+      if (dCollide(probe, collider.geom, 1, &contact, sizeof contact) > 0) {
+        found = FirstTouch{distance, collider.segment};
         return true;
       }
     }
@@ -196,16 +196,14 @@ std::optional<Collision::FirstTouch> Collision::first_touch(const Vec3& start, c
   };
   double distance = 0.0;
   while (distance <= reach && !touched(distance)) distance += kStride;
-  if (found) {
-    double outside = std::max(0.0, distance - kStride);
-    double inside = distance;
-    for (int i = 0; i < 30; ++i) {
-      const double middle = 0.5 * (outside + inside);
-      (touched(middle) ? inside : outside) = middle;
-    }
-    found->distance = inside;
+  if (!found) return std::nullopt;
+  double outside = std::max(0.0, distance - kStride);
+  double inside = distance;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (outside + inside);
+    (touched(middle) ? inside : outside) = middle;
   }
-  dGeomDestroy(probe);
+  found->distance = inside;
   return found;
 }
 

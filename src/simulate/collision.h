@@ -41,21 +41,22 @@ class Collision {
   Collision(const Collision&) = delete;
   Collision& operator=(const Collision&) = delete;
 
-  /// A ball that meets the body and the floor.
-  void add_ball(dBodyID ball, double radius);
+  /// Something that meets the body, the floor and earlier props. Takes the geom over; it moves with `body`,
+  /// or stands where it is (nullptr).
+  void add_prop(dGeomID geom, dBodyID body);
   /// Overlaps of the present pose that are no contact: shapes that fit a character may overlap at the start.
   void accept_overlaps();
   Contacts find() const;
   bool is_floor(std::size_t pair) const { return pairs_[pair].kind == PairKind::floor; }
   /// Creates the contact joints of a step.
   void touch(const Contacts& contacts, const ContactSettings& settings) const;
-  /// Where a sphere that comes along `direction` first touches the body, and which segment; nothing if it
-  /// passes by.
+  /// Where a probe that comes along `direction` from `start` first touches the body, and which segment;
+  /// nothing if it passes by within `reach`. The probe is the caller's.
   struct FirstTouch {
-    double distance;  // from `start` to the sphere's centre
+    double distance;  // from `start` to the probe's centre
     Segment segment;
   };
-  std::optional<FirstTouch> first_touch(const Vec3& start, const Vec3& direction, double radius,
+  std::optional<FirstTouch> first_touch(dGeomID probe, const Vec3& start, const Vec3& direction,
                                         double reach) const;
 
  private:

@@ -11,6 +11,7 @@
 #include "simulate/figures.h"
 #include "simulate/limits.h"
 #include "simulate/model.h"
+#include "simulate/stage.h"
 
 namespace ukemi {
 namespace {
@@ -32,8 +33,8 @@ constexpr double kCalmSpeed = 3.0;             // rad/s, of every joint
 constexpr double kWorstExcess = radians(0.5);  // above: the step is rejected
 constexpr double kWorstSeparation = 0.006;     // m
 constexpr double kWorstSinking = 0.008;        // m, growth of a pair's depth in one step
-constexpr double kFloorDepth = 0.005;           // m: below this in the floor
-constexpr double kFloorSinking = 0.002;         // m: a pair may grow only so much
+constexpr double kFloorDepth = 0.005;          // m: below this in the floor
+constexpr double kFloorSinking = 0.002;        // m: a pair may grow only so much
 constexpr double kWorstMiss =
     radians(0.3);  // beyond an edge without a row: the step is taken again with all rows
 constexpr double kErp = 0.8;
@@ -49,8 +50,7 @@ constexpr double kSlowSpeed = 0.2;    // m/s, and
 constexpr double kSlowTurning = 1.0;  // rad/s: for kSlowSpan_s the body settles into the pose it has
 constexpr double kSlowSpan_s = 0.15;
 constexpr double kSettleRamp_s = 0.5;
-constexpr double kSettleShare = 0.5;    // of the tone
-constexpr double kTouchDepth = 0.0002;  // m: the ball starts touching
+constexpr double kSettleShare = 0.5;  // of the tone
 
 struct Diverged {
   Segment segment;
@@ -71,11 +71,13 @@ Stepping stepping_of(const SimulationSettings& settings) {
 }
 
 /// Frames between two step ends: positions linearly, rotations along the arc.
+Rigid between(const Rigid& a, const Rigid& b, double u) {
+  return {a.rotation.slerp(u, b.rotation), a.translation + u * (b.translation - a.translation)};
+}
+
 BodyPose between(const BodyPose& a, const BodyPose& b, double u) {
   BodyPose pose;
-  for (int s = 0; s < kSegmentCount; ++s)
-    pose[s] = {a[s].rotation.slerp(u, b[s].rotation),
-               a[s].translation + u * (b[s].translation - a[s].translation)};
+  for (int s = 0; s < kSegmentCount; ++s) pose[s] = between(a[s], b[s], u);
   return pose;
 }
 
@@ -85,9 +87,10 @@ class Simulation {
              const StartState& start, const Scene& scene, const SimulationSettings& settings)
       : settings_(settings),
         stepping_(stepping_of(settings)),
-        scene_(scene),
+        direction_(scene.direction),
         model_(world_, body, range),
         collision_(world_, model_, body, settings.self_collision),
+        stage_(world_, model_, collision_, scene, settings.gravity),
         recorder_(model_, settings.gravity) {
     dWorldSetGravity(world_.id(), 0.0, -settings.gravity, 0.0);
     dWorldSetCFM(world_.id(), kCfm);
@@ -116,10 +119,6 @@ class Simulation {
   double base_h() const { return stepping_.tick_s * stepping_.base_ticks; }
   bool projecting() const { return settings_.limits == Limits::edges; }
 
-  void start_scene(Diagnostics& diagnostics);
-  Vec3 aim(Diagnostics& diagnostics) const;
-  void start_ball(Diagnostics& diagnostics);
-  void start_impulse();
   void set_erp(double h);
   void add_forces(double h);
   void advance(int ticks);
@@ -131,8 +130,7 @@ class Simulation {
   double worst_separation() const;
   double worst_joint_speed() const;
   double tone_share() const;
-  double push_work(double h) const;
-  double prop_energy() const;
+  std::vector<Rigid> prop_poses() const;
   void save();
   void restore();
   void check_speeds() const;
@@ -142,17 +140,16 @@ class Simulation {
 
   SimulationSettings settings_;
   Stepping stepping_;
-  Scene scene_;
+  Vec3 direction_;  // of the blow
   OdeWorld world_;
   Model model_;
   Collision collision_;
+  Stage stage_;
   Recorder recorder_;
   std::vector<PassiveLimit> passive_;
   std::vector<ActiveLimit> active_;
   std::vector<Tone> tone_;
   std::vector<bool> all_rows_;
-  dBodyID ball_ = nullptr;
-  Mat3 ball_inertia_ = Mat3::Zero();
   Contacts contacts_;
   std::vector<RigidState> saved_;
   long ticks_ = 0;
@@ -163,7 +160,7 @@ class Simulation {
   double erp_h_ = 0.0;
   Trajectory trajectory_;
   BodyPose before_, now_;
-  Rigid ball_before_, ball_now_;
+  std::vector<Rigid> props_before_, props_now_;
   double before_s_ = 0.0;
 };
 
@@ -179,71 +176,6 @@ void Simulation::set_erp(double h) {
   }
 }
 
-/// Where the ball's centre is when it first touches the body. Aimed at the target's centre; where another
-/// segment is in the way the aim moves away from it, by at most the ball's radius.
-Vec3 Simulation::aim(Diagnostics& diagnostics) const {
-  constexpr double kReach = 3.0;
-  constexpr int kTries = 12;
-  const Vec3& along = scene_.direction;
-  const auto centre = [&](Segment s) {
-    return vec3(dBodyGetPosition(model_.bodies()[model_.body_of(s)].id));
-  };
-  const Vec3 target = centre(scene_.target);
-  Vec3 aside = Vec3::Zero();
-  std::optional<Segment> obstacle;
-  for (int i = 0; i <= kTries; ++i) {
-    const Vec3 start = target + scene_.ball_radius_m * i / kTries * aside - kReach * along;
-    const auto touch = collision_.first_touch(start, along, scene_.ball_radius_m, kReach);
-    if (touch && touch->segment == scene_.target) return start + (touch->distance + kTouchDepth) * along;
-    if (i > 0 || !touch) continue;
-    obstacle = touch->segment;
-    const Vec3 away = target - centre(*obstacle);
-    aside = (away - along.dot(away) * along).normalized();
-  }
-  const Vec3 start = target - kReach * along;
-  const auto touch = collision_.first_touch(start, along, scene_.ball_radius_m, kReach);
-  if (obstacle)
-    diagnostics.warn(std::string(name(scene_.target)),
-                     fmt::format("the ball meets the {} first", name(*obstacle)));
-  return start + (touch ? touch->distance + kTouchDepth : kReach) * along;
-}
-
-void Simulation::start_ball(Diagnostics& diagnostics) {
-  const Vec3 at = aim(diagnostics);
-  ball_ = dBodyCreate(world_.id());
-  dMass mass;
-  dMassSetSphereTotal(&mass, scene_.ball_mass_kg, scene_.ball_radius_m);
-  dBodySetMass(ball_, &mass);
-  ball_inertia_ = 0.4 * scene_.ball_mass_kg * scene_.ball_radius_m * scene_.ball_radius_m * Mat3::Identity();
-  write_state(ball_, {at, scene_.ball_speed_m_s * scene_.direction, Vec3::Zero(), Quat::Identity()});
-  collision_.add_ball(ball_, scene_.ball_radius_m);
-  recorder_.momentum(scene_.ball_mass_kg * scene_.ball_speed_m_s);
-  trajectory_.impact_point = at + scene_.ball_radius_m * scene_.direction;
-  Prop prop;
-  prop.kind = Prop::Kind::ball;
-  prop.radius = scene_.ball_radius_m;
-  trajectory_.props.push_back(prop);
-  ball_before_ = ball_now_ = {Quat::Identity(), at};
-}
-
-void Simulation::start_impulse() {
-  const dBodyID target = model_.bodies()[model_.body_of(scene_.target)].id;
-  RigidState state = read_state(target);
-  state.linear_velocity +=
-      scene_.impulse_n_s / model_.bodies()[model_.body_of(scene_.target)].mass_kg * scene_.direction;
-  write_state(target, state);
-  recorder_.momentum(scene_.impulse_n_s);
-}
-
-void Simulation::start_scene(Diagnostics& diagnostics) {
-  trajectory_.fps = settings_.fps;
-  trajectory_.impact_direction = scene_.direction;
-  trajectory_.impact_point = vec3(dBodyGetPosition(model_.bodies()[model_.body_of(scene_.target)].id));
-  if (scene_.kind == SceneKind::ball) start_ball(diagnostics);
-  if (scene_.kind == SceneKind::impulse) start_impulse();
-  if (scene_.kind == SceneKind::push) recorder_.momentum(scene_.push_force_n * scene_.push_duration_s);
-}
-
 void Simulation::add_forces(double h) {
   const double damping = std::min(damping_of(settings_), kMaxExplicitGain / h);
   const double tone = tone_share();
@@ -253,10 +185,7 @@ void Simulation::add_forces(double h) {
     tone_[j].prepare(h, tone);
     if (damping > 0.0) apply_damping(model_, model_.joints()[j], damping);
   }
-  if (scene_.kind == SceneKind::push && time_s() < scene_.push_duration_s) {
-    const Vec3 force = scene_.push_force_n * scene_.direction;
-    dBodyAddForce(model_.bodies()[model_.body_of(scene_.target)].id, force.x(), force.y(), force.z());
-  }
+  stage_.apply(time_s());
 }
 
 /// Full at the blow, gone after the fade, back in part once the body lies still.
@@ -266,28 +195,16 @@ double Simulation::tone_share() const {
   return left * left * (3.0 - 2.0 * left);
 }
 
-double Simulation::push_work(double h) const {
-  if (scene_.kind != SceneKind::push || time_s() >= scene_.push_duration_s) return 0.0;
-  const Vec3 velocity = vec3(dBodyGetLinearVel(model_.bodies()[model_.body_of(scene_.target)].id));
-  return h * scene_.push_force_n * std::max(0.0, scene_.direction.dot(velocity));
-}
-
-double Simulation::prop_energy() const {
-  if (ball_ == nullptr) return 0.0;
-  const RigidState s = read_state(ball_);
-  return kinetic_energy(scene_.ball_mass_kg, ball_inertia_, s) +
-         scene_.ball_mass_kg * settings_.gravity * s.position.y();
-}
-
 void Simulation::save() {
   saved_.clear();
   for (const ModelBody& body : model_.bodies()) saved_.push_back(read_state(body.id));
-  if (ball_ != nullptr) saved_.push_back(read_state(ball_));
+  for (const dBodyID prop : stage_.bodies()) saved_.push_back(read_state(prop));
 }
 
 void Simulation::restore() {
-  for (std::size_t b = 0; b < model_.bodies().size(); ++b) write_state(model_.bodies()[b].id, saved_[b]);
-  if (ball_ != nullptr) write_state(ball_, saved_.back());
+  std::size_t next = 0;
+  for (const ModelBody& body : model_.bodies()) write_state(body.id, saved_[next++]);
+  for (const dBodyID prop : stage_.bodies()) write_state(prop, saved_[next++]);
 }
 
 void Simulation::check_speeds() const {
@@ -383,20 +300,20 @@ void Simulation::advance(int ticks) {
 
 void Simulation::accept(int ticks, const std::vector<double>& excesses, double separation, Contacts next) {
   const double h = stepping_.tick_s * ticks;
-  const double work = push_work(h);
+  const double work = stage_.work(time_s(), h);
   ticks_ += ticks;
   contacts_ = std::move(next);
   double projected = 0.0;
   if (projecting())
     for (const double value : joint_excesses()) projected = std::max(projected, value);
   recorder_.excess_of_step(excesses, projected);
-  recorder_.step(time_s(), h, contacts_, prop_energy(), work, separation);
+  recorder_.step(time_s(), h, contacts_, stage_.prop_energy(), work, separation);
   calm_steps_ = worst_joint_speed() < kCalmSpeed ? calm_steps_ + 1 : 0;
   watch_rest(ticks);
   before_ = now_;
-  ball_before_ = ball_now_;
+  props_before_ = props_now_;
   now_ = model_.segments();
-  if (ball_ != nullptr) ball_now_ = {quat(dBodyGetQuaternion(ball_)), vec3(dBodyGetPosition(ball_))};
+  props_now_ = prop_poses();
   add_frames_until(time_s());
   before_s_ = time_s();
 }
@@ -430,19 +347,30 @@ void Simulation::add_frames_until(double time_s) {
     const double u = span > 0.0 ? (frame_s - before_s_) / span : 1.0;
     const bool on_end = std::abs(frame_s - time_s) <= slack;
     trajectory_.frames.push_back(on_end ? now_ : between(before_, now_, u));
-    for (Prop& prop : trajectory_.props)
-      prop.poses.push_back(
-          on_end ? ball_now_
-                 : Rigid{ball_before_.rotation.slerp(u, ball_now_.rotation),
-                         ball_before_.translation + u * (ball_now_.translation - ball_before_.translation)});
+    for (std::size_t i = 0; i < props_now_.size(); ++i)
+      trajectory_.props[i].poses.push_back(on_end ? props_now_[i]
+                                                  : between(props_before_[i], props_now_[i], u));
   }
 }
 
+std::vector<Rigid> Simulation::prop_poses() const {
+  std::vector<Rigid> poses;
+  for (const dBodyID prop : stage_.bodies())
+    poses.push_back({quat(dBodyGetQuaternion(prop)), vec3(dBodyGetPosition(prop))});
+  return poses;
+}
+
 SimulationResult Simulation::run(Diagnostics& diagnostics) {
-  start_scene(diagnostics);
+  stage_.begin(diagnostics);
+  recorder_.momentum(stage_.momentum_n_s());
+  trajectory_.fps = settings_.fps;
+  trajectory_.props = stage_.props();
+  trajectory_.impact_point = stage_.impact_point();
+  trajectory_.impact_direction = direction_;
   contacts_ = collision_.find();
   now_ = before_ = model_.segments();
-  recorder_.step(0.0, 0.0, contacts_, prop_energy(), 0.0, 0.0);
+  props_now_ = props_before_ = prop_poses();
+  recorder_.step(0.0, 0.0, contacts_, stage_.prop_energy(), 0.0, 0.0);
   add_frames_until(0.0);
   const long end = std::lround(std::ceil(settings_.duration_s / stepping_.tick_s - 1e-6));
   while (ticks_ < end && !(resting_ && settings_.stop_at_rest && stepping_.adaptive)) {
@@ -452,7 +380,7 @@ SimulationResult Simulation::run(Diagnostics& diagnostics) {
   }
   // At rest the pose is held to the end.
   before_ = now_;
-  ball_before_ = ball_now_;
+  props_before_ = props_now_;
   before_s_ = time_s();
   add_frames_until(settings_.duration_s);
   SimulationResult result;

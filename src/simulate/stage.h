@@ -1,0 +1,64 @@
+// What happens to the body: a ball, a box, a ramp with a ball, a push, an impulse, a fall.
+#pragma once
+
+#include <vector>
+
+#include "simulate/collision.h"
+#include "simulate/model.h"
+#include "simulate/simulate.h"
+
+namespace ukemi {
+
+/// The scene in the world. Time 0 is the first contact: whatever hits starts touching.
+class Stage {
+ public:
+  Stage(OdeWorld& world, Model& model, Collision& collision, const Scene& scene, double gravity);
+
+  /// Puts the props in place and gives the body what it gets at once.
+  void begin(Diagnostics& diagnostics);
+  /// Forces of the step that starts at `time_s`.
+  void apply(double time_s) const;
+  /// Work on the body in a step of length h that starts at `time_s`, from the speed that it ends with, J.
+  double work(double time_s, double h) const;
+  /// Kinetic and potential energy of the props, J.
+  double prop_energy() const;
+  double momentum_n_s() const { return momentum_; }
+  Vec3 impact_point() const { return impact_point_; }
+
+  /// Props that move, in the order of `props()`.
+  const std::vector<dBodyID>& bodies() const { return bodies_; }
+  /// Shapes of all props, those that move first; no poses yet but the still ones'.
+  const std::vector<Prop>& props() const { return props_; }
+
+ private:
+  struct Inertia {
+    double mass_kg;
+    Mat3 tensor;
+  };
+  void begin_missile(Diagnostics& diagnostics);
+  void begin_slope(Diagnostics& diagnostics);
+  void begin_impulse();
+  void begin_fall();
+  /// Where the probe's centre is when it first touches the body; aside from what is in the way, see the
+  /// definition.
+  Vec3 aim(dGeomID probe, Diagnostics& diagnostics) const;
+  void launch(dGeomID geom, const Vec3& at, const Vec3& velocity, const Vec3& angular_velocity,
+              const Quat& rotation);
+  const ModelBody& target() const { return model_.bodies()[model_.body_of(scene_.target)]; }
+  bool pushing(double time_s) const {
+    return scene_.kind == SceneKind::push && time_s < scene_.push_duration_s;
+  }
+
+  OdeWorld& world_;
+  Model& model_;
+  Collision& collision_;
+  Scene scene_;
+  double gravity_;
+  double momentum_ = 0.0;
+  Vec3 impact_point_ = Vec3::Zero();
+  std::vector<dBodyID> bodies_;
+  std::vector<Inertia> inertias_;
+  std::vector<Prop> props_;
+};
+
+}  // namespace ukemi
