@@ -125,6 +125,8 @@ struct Assembler {
       const Segment hand = side == 0 ? Segment::hand_l : Segment::hand_r;
       if (!at(foot).fused()) {
         humanoid.toes[side] = best_below(at(foot).node(), Part::toe);
+        if (humanoid.toes[side] < 0 && read_name(skeleton.nodes[at(foot).node()].name).stem == "ankle")
+          humanoid.toes[side] = best_below(at(foot).node(), Part::foot);
         if (humanoid.toes[side] < 0) humanoid.toes[side] = only_end_below(at(foot).node());
       }
       if (!at(hand).fused()) {

@@ -68,6 +68,7 @@ constexpr Pattern kPatterns[] = {
     {Part::upper_arm, "upperarm", 10},
     {Part::upper_arm, "uparm", 10},
     {Part::upper_arm, "armupper", 9},
+    {Part::upper_arm, "uarm", 9},
     {Part::upper_arm, "humerus", 9},
     {Part::upper_arm, "shldrbend", 8},
     {Part::upper_arm, "arm", 6},
@@ -82,6 +83,7 @@ constexpr Pattern kPatterns[] = {
     {Part::forearm, "lowarm", 10},
     {Part::forearm, "armlower", 9},
     {Part::forearm, "forearmbend", 9},
+    {Part::forearm, "farm", 9},
     {Part::forearm, "elbow", 8},
     {Part::forearm, "radius", 6},
     {Part::forearm, "ulna", 5},
@@ -138,8 +140,8 @@ constexpr Pattern kPatterns[] = {
     {Part::toe, "toesbase", 9},
 };
 
-constexpr std::string_view kLeft[] = {"l", "left", "lft", "lf"};
-constexpr std::string_view kRight[] = {"r", "right", "rgt", "rt"};
+constexpr std::string_view kLeft[] = {"l", "left", "lft"};
+constexpr std::string_view kRight[] = {"r", "right", "rgt"};
 constexpr std::string_view kHelper[] = {
     "ik",         "fk",       "pole",  "poletarget", "target",    "ctrl",   "control",
     "ctl",        "twist",    "roll",  "share",      "mch",       "helper", "locator",
@@ -206,6 +208,12 @@ bool split_side(std::string& word, Side& side) {
       side = s;
       return true;
     }
+  }
+  // LUArm, RFArm: the second capital belongs to the part.
+  if (word == "lu" || word == "lf" || word == "ru" || word == "rf") {
+    side = word[0] == 'l' ? Side::left : Side::right;
+    word.erase(0, 1);
+    return true;
   }
   if (word.size() < 4 || is_stem(word)) return false;
   const std::string_view view = word;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "humanoid/figure.h"
 #include "humanoid/humanoid.h"
 #include "humanoid/skin.h"
 
@@ -47,12 +48,12 @@ constexpr Stance kGuard = {-20.0,
                            -6.0,
                            2.0,
                            25.0,
-                           {14.0, 38.0, 18.0, 116.0, 20.0, 4.0, 6.0, 0.0},
-                           {12.0, 30.0, 22.0, 120.0, 20.0, 4.0, 4.0, 0.0},
+                           {14.0, 38.0, 10.0, 116.0, 20.0, 4.0, 6.0, 0.0},
+                           {14.0, 30.0, 14.0, 120.0, 20.0, 4.0, 4.0, 0.0},
                            {0.08, 0.22, -2.0},
                            {0.10, -0.22, 18.0}};
 
-struct Figure {
+struct Mover {
   const BodyPose& from;
   BodyPose to;
 
@@ -71,7 +72,7 @@ struct Figure {
 Segment on_side(Segment left, bool is_left) { return is_left ? left : mirror_of(left); }
 
 /// Right-hand formulas; `m` mirrors rotations about x and y for the left.
-void place_arm(Figure& figure, const ArmAngles& arm, bool left) {
+void place_arm(Mover& figure, const ArmAngles& arm, bool left) {
   const double m = left ? -1.0 : 1.0;
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
   figure.place_relative(on_side(Segment::clavicle_l, left),
@@ -88,7 +89,7 @@ void place_arm(Figure& figure, const ArmAngles& arm, bool left) {
 
 /// Thigh and shank from the ankle's place (two-bone solution, knee over the foot), the foot flat on the
 /// floor. `heading`: x forward, y up, z right.
-void place_leg(Figure& figure, const LegStance& leg, double ankle_height, const Quat& heading, bool left) {
+void place_leg(Mover& figure, const LegStance& leg, double ankle_height, const Quat& heading, bool left) {
   const Segment thigh = on_side(Segment::thigh_l, left), shank = on_side(Segment::shank_l, left),
                 foot = on_side(Segment::foot_l, left);
   const double outwards = left ? -1.0 : 1.0;
@@ -131,7 +132,7 @@ Quat heading_of(const Quat& pelvis) {
 }
 
 BodyPose body_in(const Stance& stance, const BodyPose& from) {
-  Figure figure{from, from};
+  Mover figure{from, from};
   const Vec3 y = Vec3::UnitY(), z = Vec3::UnitZ();
   const Quat heading = heading_of(from[index(Segment::pelvis)].rotation);
   figure.to[index(Segment::pelvis)].rotation = heading * about(y, stance.pelvis_turn_deg);
@@ -187,8 +188,20 @@ Pose stand_on_floor(const Character& character, const Humanoid& humanoid, const 
   return pose_skeleton(character.skeleton, humanoid, pose, from, to);
 }
 
+namespace {
+
+/// The rest pose, unless it is no pose or does not stand upright: then the reference pose.
+Pose rest_on_feet(const Character& character, const Humanoid& humanoid) {
+  const Pose rest = rest_pose(character.skeleton);
+  const Figure figure(character, humanoid, rest);
+  const Vec3 up = humanoid.world_from_file.rotation.conjugate() * Vec3::UnitY();
+  return usable(figure) && angle(figure.rise(), up) < radians(25) ? rest : humanoid.reference;
+}
+
+}  // namespace
+
 Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose kind) {
-  if (kind == StartPose::rest) return stand_on_floor(character, humanoid, humanoid.reference);
+  if (kind == StartPose::rest) return stand_on_floor(character, humanoid, rest_on_feet(character, humanoid));
   const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
   const BodyPose to = body_in(kind == StartPose::stand ? kStand : kGuard, from);
   return stand_on_floor(character, humanoid,
