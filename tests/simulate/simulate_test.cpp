@@ -268,6 +268,69 @@ TEST(Simulate, TheAimMovesAwayFromAnArmInTheWay) {
   EXPECT_NE(diagnostics.warnings()[0].what.find("first"), std::string::npos);
 }
 
+TEST(Simulate, ASlopeBallRollsIntoTheLegAlongItsRamp) {
+  const StandingMan man;
+  Scene scene;
+  scene.kind = SceneKind::slope;
+  scene.target = Segment::shank_l;
+  scene.direction = -Vec3::UnitX();
+  const auto result = run(man, scene, {});
+  ASSERT_EQ(result.trajectory.props.size(), 2u);
+  const Prop& ball = result.trajectory.props[0];
+  const Prop& ramp = result.trajectory.props[1];
+  EXPECT_FALSE(ramp.moves);
+  EXPECT_NEAR(ball.poses[0].translation.y(), scene.ball_radius_m, 0.05) << "at the foot of the ramp";
+  const Vec3 before = ramp.poses[0].inverse() * ball.poses[0].translation;
+  EXPECT_NEAR(before.y(), 0.5 * ramp.size.y() + scene.ball_radius_m, 0.01) << "on the ramp";
+  EXPECT_EQ(result.limits.over_1deg, 0);
+}
+
+TEST(Simulate, ATippedBodyFallsTheWayItIsTipped) {
+  const StandingMan man;
+  Scene scene;
+  scene.kind = SceneKind::fall;
+  scene.direction = Vec3::UnitZ();
+  const auto result = run(man, scene, {});
+  const BodyPose& last = result.trajectory.frames.back();
+  EXPECT_GT(last[index(Segment::head)].translation.z(), 0.5);
+  EXPECT_LT(last[index(Segment::head)].translation.y(), 0.5);
+  scene.fall_height_m = 1.0;
+  EXPECT_NEAR(run(man, scene, {}).trajectory.frames[0][0].translation.y(),
+              man.segments[0].translation.y() + 1.0, 1e-9);
+}
+
+TEST(Simulate, AFastSmallBallDoesNotPassThroughAForearm) {
+  const StandingMan man;
+  Scene scene;
+  scene.target = Segment::forearm_r;
+  scene.direction = -Vec3::UnitX();
+  scene.ball_mass_kg = 0.145;
+  scene.ball_speed_m_s = 45.0;
+  scene.ball_radius_m = 0.037;
+  SimulationSettings settings;
+  settings.duration_s = 0.05;
+  const auto result = run(man, scene, settings);
+  const Prop& ball = result.trajectory.props[0];
+  const double travelled = ball.poses[0].translation.x() - ball.poses.back().translation.x();
+  EXPECT_LT(travelled, 0.6 * 45.0 * 0.05) << "the arm took momentum";
+  EXPECT_LT(result.trajectory.frames.back()[index(Segment::hand_r)].translation.x(), -0.02);
+}
+
+TEST(Simulate, ABoxSlidesIn) {
+  const StandingMan man;
+  Scene scene;
+  scene.kind = SceneKind::box;
+  scene.target = Segment::thigh_l;
+  scene.direction = Vec3::UnitZ() * -1.0;
+  scene.ball_mass_kg = 30.0;
+  scene.ball_radius_m = 0.2;
+  SimulationSettings settings;
+  settings.duration_s = 0.5;
+  const auto result = run(man, scene, settings);
+  EXPECT_LT(result.trajectory.frames.back()[0].translation.z(), -0.1);
+  EXPECT_EQ(result.limits.over_1deg, 0);
+}
+
 TEST(Simulate, AFallenBodyComesToRestAndIsHeld) {
   const StandingMan man;
   Scene scene;
