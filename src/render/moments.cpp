@@ -1,5 +1,7 @@
 #include "render/moments.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,8 +11,19 @@ namespace {
 
 // Standing still counts a little, so that a long rest is not left out.
 constexpr double kIdleSpeed_m_s = 0.05;
+// Just after the impact motion counts up to three times: the blow is told by what is still small there.
+constexpr double kImpactWeight = 2.0;
+constexpr double kImpactFade_s = 0.15;
+constexpr double kStill_m = 0.01;  // of mean way from the mark "rest" to the end: nothing more is to be seen
 
-/// Mean way of the points from the first frame to each frame, metres.
+double weight_at(const Clip& clip, double time_s) {
+  for (const Mark& mark : clip.marks)
+    if (mark.name == "impact" && time_s >= mark.time_s)
+      return 1.0 + kImpactWeight * std::exp(-(time_s - mark.time_s) / kImpactFade_s);
+  return 1.0;
+}
+
+/// Mean way of the points from the first frame to each frame, metres, weighted after the impact.
 std::vector<double> travelled(const Clip& clip, const std::vector<std::vector<Vec3>>& points) {
   std::vector<double> way(clip.frames.size(), 0.0);
   for (std::size_t frame = 1; frame < way.size(); ++frame) {
@@ -18,7 +31,8 @@ std::vector<double> travelled(const Clip& clip, const std::vector<std::vector<Ve
     for (std::size_t i = 0; i < points[frame].size(); ++i)
       sum += (points[frame][i] - points[frame - 1][i]).norm();
     const double mean = points[frame].empty() ? 0.0 : sum / static_cast<double>(points[frame].size());
-    way[frame] = way[frame - 1] + mean + kIdleSpeed_m_s / clip.fps;
+    way[frame] = way[frame - 1] + weight_at(clip, static_cast<double>(frame) / clip.fps) * mean +
+                 kIdleSpeed_m_s / clip.fps;
   }
   return way;
 }
@@ -86,10 +100,28 @@ std::string phase_at(const Clip& clip, int frame) {
   return phase;
 }
 
+/// A rest that lasts to the end is shown by the last frame.
+Clip with_rest_at_end(const Clip& clip, const std::vector<std::vector<Vec3>>& points) {
+  Clip marked{clip.name, clip.fps, std::vector<Pose>(clip.frames.size()), clip.marks};
+  const std::vector<Vec3>& last = points.back();
+  for (Mark& mark : marked.marks) {
+    const std::vector<Vec3>& there = points[frame_at(clip, mark.time_s)];
+    double way = 0.0;
+    for (std::size_t i = 0; i < last.size(); ++i) way += (last[i] - there[i]).norm();
+    const bool still = way <= kStill_m * static_cast<double>(last.size());
+    if (mark.name != "rest" || !still || frame_at(clip, mark.time_s) + 1 >= static_cast<int>(points.size()))
+      continue;
+    mark.name = fmt::format("at rest since {:.2f} s", mark.time_s);
+    mark.time_s = clip.duration_s();
+  }
+  return marked;
+}
+
 }  // namespace
 
-std::vector<Moment> choose_moments(const Clip& clip, const std::vector<std::vector<Vec3>>& points,
+std::vector<Moment> choose_moments(const Clip& original, const std::vector<std::vector<Vec3>>& points,
                                    int count) {
+  const Clip clip = with_rest_at_end(original, points);
   std::vector<int> fixed;
   for (const int frame : wanted_frames(clip))
     if (static_cast<int>(fixed.size()) < count && std::find(fixed.begin(), fixed.end(), frame) == fixed.end())

@@ -14,8 +14,9 @@ struct Moment {
 };
 
 /// At most `count` frames in order: the first, the marked ones and the last, then what divides the motion
-/// between them most evenly by the way that the points travel, so that fast parts get more frames.
-/// `points[frame]` are places in metres, as many in every frame. Contract: the clip has a frame, count > 0.
+/// between them most evenly by the way that the points travel, so that fast parts get more frames, above all
+/// just after the impact. A rest that lasts to the end is named at the last frame. `points[frame]` are places
+/// in metres, as many in every frame. Contract: the clip has a frame, count > 0.
 std::vector<Moment> choose_moments(const Clip& clip, const std::vector<std::vector<Vec3>>& points, int count);
 
 }  // namespace ukemi

@@ -44,7 +44,9 @@ Vec3 side_to_look_from(const Vec3& direction, const Vec3& facing) {
   // Seen from `across`, the direction runs from left to right.
   Vec3 across = direction.cross(Vec3::UnitY());
   if (facing.dot(across) < -0.2) across = -across;
-  return (across + 0.55 * facing).normalized();
+  // A front view is turned a little too, to the side that the blow goes to: what strikes stays behind.
+  const double frontal = std::max(0.0, facing.dot(across));
+  return (across + 0.55 * facing + 0.45 * frontal * direction).normalized();
 }
 
 double floor_height(double lowest) { return std::abs(lowest) <= kFloorSearch_m ? 0.0 : lowest; }

@@ -46,6 +46,24 @@ TEST(Moments, hold_first_last_and_marked_frames_and_name_them) {
   EXPECT_EQ(named, (std::vector<std::string>{"start", "impact", "first ground contact", "rest"}));
 }
 
+TEST(Moments, are_denser_just_after_the_impact) {
+  auto [clip, points] = motion(121, [](int frame) { return 0.02 * frame; });
+  clip.marks = {{"impact", 2.0}};
+  const std::vector<int> frames = frames_of(choose_moments(clip, points, 14));
+  const auto impact = std::find(frames.begin(), frames.end(), 60);
+  ASSERT_NE(impact, frames.end());
+  EXPECT_LT(3 * (impact[1] - impact[0]), 2 * (frames[1] - frames[0]));
+}
+
+TEST(Moments, name_a_rest_that_lasts_at_the_last_frame) {
+  auto [clip, points] = motion(91, [](int frame) { return 0.02 * std::min(frame, 60); });
+  clip.marks = {{"rest", 2.0}};
+  EXPECT_EQ(choose_moments(clip, points, 6).back().phase, "at rest since 2.00 s");
+  for (const Moment& moment : choose_moments(clip, points, 2)) EXPECT_NE(moment.frame, 60);
+  clip.marks = {{"rest", 1.0}};
+  EXPECT_EQ(choose_moments(clip, points, 6).back().phase, "") << "it moved on after that";
+}
+
 TEST(Moments, name_two_marks_of_one_frame_together) {
   auto [clip, points] = motion(10, [](int frame) { return 0.1 * frame; });
   clip.marks = {{"start", 0.0}, {"impact", 0.0}};
