@@ -51,6 +51,13 @@ Result<std::vector<std::uint8_t>> sheet_png(const Shot& shot, bool shapes) {
   return encode_png(*picture);
 }
 
+/// Moves a clip whose floor lies at another height to y = 0, where pictures have theirs.
+void put_on_floor(const Character& character, const Humanoid& humanoid, double floor_m, Clip& clip) {
+  if (floor_m == 0.0) return;
+  for (Pose& frame : clip.frames)
+    frame = moved(character.skeleton, humanoid, frame, Vec3(0.0, -floor_m, 0.0));
+}
+
 Result<Clip> clip_to_draw(const Character& character, const RenderSettings& settings) {
   if (!settings.clip && character.animations.empty()) {
     Clip still{"rest pose", kSheetRate, {}, {}};
@@ -68,18 +75,20 @@ Result<Clip> clip_to_draw(const Character& character, const RenderSettings& sett
   return clip;
 }
 
-/// What shapes need beside the clip.
+/// What is drawn beside the mesh, and where.
 struct Shapes {
   Humanoid humanoid;
   std::optional<ArticulatedBody> body;
   std::vector<BodyPose> segments;
 };
 
-Result<Shapes> shapes_of(const Character& character, const Clip& clip, const RenderSettings& settings,
-                         Diagnostics& diagnostics) {
+/// Puts the clip on the floor and finds the segments' shapes where they are wanted.
+Result<Shapes> place(const Character& character, Clip& clip, const RenderSettings& settings,
+                     Diagnostics& diagnostics) {
   auto humanoid = map_humanoid(character, settings.humanoid, diagnostics);
   if (!humanoid) return humanoid.error();
   Shapes shapes{std::move(*humanoid), std::nullopt, {}};
+  put_on_floor(character, shapes.humanoid, floor_of(character, shapes.humanoid, clip.frames), clip);
   if (!settings.shapes && !character.parts.empty()) return shapes;
   for (const Pose& pose : clip.frames)
     shapes.segments.push_back(canonical_segments_of(character.skeleton, shapes.humanoid, pose));
@@ -95,9 +104,7 @@ Result<Shapes> shapes_of(const Character& character, const Clip& clip, const Ren
 Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const BakeSettings& settings,
                                              const BakeOutcome& outcome) {
   Clip clip = outcome.clip;
-  if (outcome.start.floor_m != 0.0)
-    for (Pose& frame : clip.frames)
-      frame = moved(character.skeleton, outcome.humanoid, frame, Vec3(0.0, -outcome.start.floor_m, 0.0));
+  put_on_floor(character, outcome.humanoid, outcome.start.floor_m, clip);
   const Trajectory& trajectory = outcome.simulation.trajectory;
   Shot shot;
   shot.character = &character;
@@ -122,9 +129,9 @@ Result<RenderedClip> render_clip(const std::string& file, const RenderSettings& 
   if (!path) return path.error();
   const auto character = load_character(*path, LoadOptions{}, diagnostics);
   if (!character) return character.error();
-  const auto clip = clip_to_draw(*character, settings);
+  auto clip = clip_to_draw(*character, settings);
   if (!clip) return clip.error();
-  const auto shapes = shapes_of(*character, *clip, settings, diagnostics);
+  const auto shapes = place(*character, *clip, settings, diagnostics);
   if (!shapes) return shapes.error();
   Shot shot;
   shot.character = &*character;

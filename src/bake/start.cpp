@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <utility>
+#include <vector>
 
 #include "bake/bake.h"
 #include "bake/nearest.h"
@@ -14,12 +14,11 @@ namespace ukemi {
 namespace {
 
 constexpr double kVelocityStep = 1.0 / 240.0;  // s, to either side
+constexpr double kFastest = 20.0;              // m/s, of a body 1.75 m tall: faster than ordinary motion
+constexpr double kFastestTurn = 60.0;          // rad/s
 constexpr double kFloorRate = 30.0;            // samples per second of a clip
 constexpr int kMaxFloorSamples = 600;
-// Faster than any joint or segment of ordinary human motion: the clip jumps there (a T-pose as its first
-// frame).
-constexpr double kFastestSegment = 20.0;  // m/s, of a body 1.75 m tall
-constexpr double kFastestTurning = 60.0;  // rad/s
+constexpr double kFloorQuantile = 0.05;  // a calibration pose or a slipped frame may lie deeper
 
 Error usage(std::string what, std::string fix) {
   return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
@@ -40,27 +39,51 @@ double height_above_floor(const Character& character, const Humanoid& humanoid, 
   return pelvis_height(pose) - pelvis_height(stand_on_floor(character, humanoid, pose));
 }
 
-bool jumps(const StartState& state, double height_m) {
-  for (int i = 0; i < kSegmentCount; ++i)
-    if (state.linear_velocity[i].norm() > kFastestSegment * std::max(1.0, height_m / 1.75) ||
-        state.angular_velocity[i].norm() > kFastestTurning)
-      return true;
-  return false;
-}
-
-/// Central differences of the segments as the nodes have them (their rolls do not jump); one-sided at the
-/// clip's ends.
-void take_velocities(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& animation,
-                     double time_s, StartState& state) {
-  const double before = std::max(animation.start_s, time_s - kVelocityStep);
-  const double after = std::min(animation.end_s, time_s + kVelocityStep);
-  if (!(after > before)) return;
+/// Differences of the segments as the nodes have them (their rolls do not jump) between two times of a clip;
+/// false where they are faster than any body: a cut, or a calibration pose before the motion.
+bool take_velocities(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& animation,
+                     double before, double after, StartState& state) {
+  before = std::max(animation.start_s, before);
+  after = std::min(animation.end_s, after);
+  if (!(after > before)) return false;
   const BodyPose a = segments_of(skeleton, humanoid, sample(skeleton, animation, before));
   const BodyPose b = segments_of(skeleton, humanoid, sample(skeleton, animation, after));
+  const double fastest = kFastest * std::max(1.0, humanoid.height_m / 1.75);
+  PerSegment<Vec3> linear, angular;
   for (int i = 0; i < kSegmentCount; ++i) {
-    state.linear_velocity[i] = (b[i].translation - a[i].translation) / (after - before);
-    state.angular_velocity[i] = log_rotation(b[i].rotation * a[i].rotation.conjugate()) / (after - before);
+    linear[i] = (b[i].translation - a[i].translation) / (after - before);
+    angular[i] = log_rotation(b[i].rotation * a[i].rotation.conjugate()) / (after - before);
+    if (linear[i].norm() > fastest || angular[i].norm() > kFastestTurn) return false;
   }
+  state.linear_velocity = linear;
+  state.angular_velocity = angular;
+  return true;
+}
+
+/// Central differences; where the clip jumps, those of the side that does not; else zero, with a warning.
+void find_velocities(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& animation,
+                     double time_s, StartState& state, Diagnostics& diagnostics) {
+  if (!(animation.duration_s() > 0.0)) return;
+  const double before = time_s - kVelocityStep, after = time_s + kVelocityStep;
+  if (take_velocities(skeleton, humanoid, animation, before, after, state)) return;
+  if (take_velocities(skeleton, humanoid, animation, time_s, after, state)) return;
+  if (take_velocities(skeleton, humanoid, animation, before, time_s, state)) return;
+  diagnostics.warn(
+      animation.name,
+      fmt::format("the clip jumps at {:.3f} s: the body starts from that pose at rest; --at chooses "
+                  "another time",
+                  time_s - animation.start_s));
+}
+
+std::vector<Pose> floor_samples(const Skeleton& skeleton, const Animation& animation) {
+  const double wanted = animation.duration_s() * kFloorRate;
+  const int last = static_cast<int>(std::min(wanted, static_cast<double>(kMaxFloorSamples)));
+  std::vector<Pose> poses;
+  for (int i = 0; i <= last; ++i) {
+    const double time_s = animation.start_s + (last > 0 ? animation.duration_s() * i / last : 0.0);
+    poses.push_back(sample(skeleton, animation, time_s));
+  }
+  return poses;
 }
 
 Start start_from_clip(const Character& character, const Humanoid& humanoid, std::size_t clip, double at_s,
@@ -71,13 +94,11 @@ Start start_from_clip(const Character& character, const Humanoid& humanoid, std:
   start.from_clip = true;
   start.at_s = at_s;
   start.pose = sample(character.skeleton, animation, animation.start_s + at_s);
-  start.floor_m = floor_of(character, humanoid, animation);
-  take_velocities(character.skeleton, humanoid, animation, animation.start_s + at_s, start.state);
-  if (jumps(start.state, humanoid.height_m)) {
-    start.state = StartState();
-    diagnostics.warn(start.name,
-                     fmt::format("the clip jumps at {:.3f} s; the body starts at rest there", at_s));
-  }
+  const std::vector<Pose> poses = floor_samples(character.skeleton, animation);
+  const double floor_m = floor_of(character, humanoid, poses);
+  start.floor_m = std::min(floor_m, height_above_floor(character, humanoid, start.pose));
+  find_velocities(character.skeleton, humanoid, animation, animation.start_s + at_s, start.state,
+                  diagnostics);
   return start;
 }
 
@@ -125,16 +146,12 @@ Result<std::size_t> find_clip(const Character& character, std::string_view name)
   return usage(what, names.empty() ? "the file holds no clips; use --pose" : suggestion(name, names));
 }
 
-double floor_of(const Character& character, const Humanoid& humanoid, const Animation& animation) {
-  const double wanted = animation.duration_s() * kFloorRate;
-  const int last = static_cast<int>(std::min(wanted, static_cast<double>(kMaxFloorSamples)));
-  double floor = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= last; ++i) {
-    const double time_s = animation.start_s + (last > 0 ? animation.duration_s() * i / last : 0.0);
-    floor = std::min(floor,
-                     height_above_floor(character, humanoid, sample(character.skeleton, animation, time_s)));
-  }
-  return floor;
+double floor_of(const Character& character, const Humanoid& humanoid, const std::vector<Pose>& poses) {
+  std::vector<double> heights;
+  for (const Pose& pose : poses) heights.push_back(height_above_floor(character, humanoid, pose));
+  const auto rank = static_cast<std::ptrdiff_t>(kFloorQuantile * static_cast<double>(heights.size() - 1));
+  std::nth_element(heights.begin(), heights.begin() + rank, heights.end());
+  return heights[static_cast<std::size_t>(rank)];
 }
 
 Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings,

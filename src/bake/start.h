@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/character.h"
 #include "base/result.h"
@@ -33,8 +34,9 @@ std::string clip_label(const Character& character, std::size_t clip);
 /// Index of the clip of that name (the first of equals) or "#INDEX". Errors: usage, with the nearest name.
 Result<std::size_t> find_clip(const Character& character, std::string_view name);
 
-/// Height of the lowest point of the feet over a whole clip, metres.
-double floor_of(const Character& character, const Humanoid& humanoid, const Animation& animation);
+/// Height of the floor under some poses of a clip, metres: of the lowest point of the feet, in all but the
+/// lowest twentieth of the poses.
+double floor_of(const Character& character, const Humanoid& humanoid, const std::vector<Pose>& poses);
 
 /// The start that the settings ask for. Errors: usage (--pose and --clip together, --at without a clip or
 /// outside it, unknown pose or clip).

@@ -153,7 +153,8 @@ TEST(NativeRate, IsTheFilesOrThatOfTheClosestKeys) {
   Animation animation{"a", 0.0, 1.0, 0.0, {}};
   EXPECT_EQ(native_rate(animation), 0.0);
   Track track;
-  for (int i : {0, 5, 6, 9, 10, 24}) track.times.push_back(static_cast<double>(static_cast<float>(i) / 24.0f));
+  for (int i : {0, 5, 6, 9, 10, 24})
+    track.times.push_back(static_cast<double>(static_cast<float>(i) / 24.0f));
   animation.tracks.push_back(track);
   animation.tracks.push_back({0, TrackPath::scale, Interpolation::linear, {0.0, 1.0}, {}});
   EXPECT_EQ(native_rate(animation), 24.0);

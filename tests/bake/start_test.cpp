@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "bake/bake.h"
 #include "bake/report.h"
+#include "load/load.h"
 
 namespace ukemi {
 namespace {
@@ -47,6 +51,87 @@ TEST(Start, MovingAFigureMovesItsRootsInTheFilesUnitsAndAxes) {
   EXPECT_LT((pose[0].translation - Vec3(0, 0, 50)).norm(), 1e-12);
   EXPECT_EQ(pose[1].translation.norm(), 0.0);
   EXPECT_LT((pose[2].translation - Vec3(0, 0, 50)).norm(), 1e-12);
+}
+
+/// The mannequin's walk, as motion alone.
+struct Walk {
+  Character character;
+  Humanoid humanoid;
+  Diagnostics diagnostics;
+  BakeSettings settings;
+
+  Walk() {
+    auto loaded =
+        load_character(std::string(UKEMI_ASSETS_FOLDER) + "/characters/mannequin.bvh", {}, diagnostics);
+    EXPECT_TRUE(loaded);
+    character = std::move(*loaded);
+    humanoid = *map_humanoid(character, {}, diagnostics);
+  }
+  Track& root_track() {
+    for (Track& track : character.animations[0].tracks)
+      if (track.path == TrackPath::translation && track.node == 0) return track;
+    throw std::runtime_error("no root track");
+  }
+  Start start(double at_s) {
+    settings.at_s = at_s;
+    auto result = start_of(character, humanoid, settings, diagnostics);
+    EXPECT_TRUE(result);
+    return *result;
+  }
+};
+
+TEST(Start, FromAClipTakesItsVelocities) {
+  Walk walk;
+  const Start start = walk.start(0.5);
+  const Vec3 pelvis = start.state.linear_velocity[index(Segment::pelvis)];
+  EXPECT_GT(pelvis.z(), 0.8) << "the mannequin walks towards +z";
+  EXPECT_LT(pelvis.norm(), 2.0);
+  double fastest = 0.0;
+  for (const Vec3& turn : start.state.angular_velocity) fastest = std::max(fastest, turn.norm());
+  EXPECT_GT(fastest, 1.0) << "legs swing";
+  EXPECT_TRUE(walk.diagnostics.warnings().empty());
+}
+
+TEST(Start, AtAJumpOfTheClipIsAtRestAndSaysSo) {
+  Walk walk;
+  walk.root_track().values[0] += 1000.0;  // frame 0 stands 10 m away
+  const Start start = walk.start(0.0);
+  for (int i = 0; i < kSegmentCount; ++i) {
+    EXPECT_EQ(start.state.linear_velocity[i].norm(), 0.0);
+    EXPECT_EQ(start.state.angular_velocity[i].norm(), 0.0);
+  }
+  ASSERT_EQ(walk.diagnostics.warnings().size(), 1u);
+  EXPECT_NE(walk.diagnostics.warnings()[0].what.find("jumps at 0.000 s"), std::string::npos);
+}
+
+TEST(Start, BesideAJumpTakesTheVelocityOfTheOtherSide) {
+  Walk walk;
+  const double frame_s = walk.root_track().times[1];
+  const Start smooth = walk.start(frame_s);
+  walk.root_track().values[0] += 1000.0;
+  const Start start = walk.start(frame_s);
+  EXPECT_TRUE(walk.diagnostics.warnings().empty());
+  constexpr int pelvis = index(Segment::pelvis);
+  EXPECT_LT((start.state.linear_velocity[pelvis] - smooth.state.linear_velocity[pelvis]).norm(), 0.2);
+}
+
+TEST(Start, TheFloorOfAClipIsNotThatOfACalibrationFrame) {
+  Walk walk;
+  const double floor_m = walk.start(0.5).floor_m;
+  EXPECT_NEAR(floor_m, 0.0, 0.02);
+  walk.root_track().values[1] -= 100.0;  // frame 0 lies 1 m deeper
+  EXPECT_NEAR(walk.start(0.5).floor_m, floor_m, 0.005);
+  EXPECT_NEAR(walk.start(0.0).floor_m, floor_m - 1.0, 0.05) << "but it carries a body that starts there";
+}
+
+TEST(Start, SegmentsOfTheSimulationStandAboveItsFloor) {
+  Walk walk;
+  for (double& value : walk.root_track().values) value += 50.0;  // everything half a metre up, and aside
+  const Start start = walk.start(0.5);
+  EXPECT_NEAR(start.floor_m, 0.5, 0.02);
+  for (int i = 0; i < kSegmentCount; ++i)
+    EXPECT_NEAR(start.state.segments[i].translation.y(), start.segments[i].translation.y() - start.floor_m,
+                1e-12);
 }
 
 TEST(Report, NamesAReactionByTargetAndDirection) {
