@@ -280,7 +280,8 @@ Status check_scene(const BakeSettings& settings) {
 }
 
 std::optional<std::string> preset_in_use(const BakeSettings& settings) {
-  if (settings.ball_mass_kg && settings.ball_speed_m_s && settings.ball_radius_m) return std::nullopt;
+  const bool own_ball = settings.ball_mass_kg && settings.ball_speed_m_s && settings.ball_radius_m;
+  if (own_ball || settings.scene == name(SceneKind::fall)) return std::nullopt;
   return settings.preset;
 }
 

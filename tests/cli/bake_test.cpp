@@ -146,16 +146,17 @@ TEST_F(Bake, KeysAreAllWrittenWhenAsked) {
 
 TEST_F(Bake, RunsWithEveryMethodAndScene) {
   const std::vector<std::vector<std::string>> variations = {
-      {"--limits", "segments"}, {"--limits", "axis"},
-      {"--active", "off"},      {"--active", "explicit", "--active-k", "5"},
-      {"--rate", "fixed:480"},  {"--region", "diamond"},
-      {"--region", "box"},      {"--scene", "push"},
-      {"--scene", "impulse"},   {"--preset", "tackle"},
-      {"--preset", "shot"},     {"--pose", "rest"},
-      {"--pose", "guard"},      {"--sex", "female"},
-      {"--mass", "120"},        {"--active-delay", "0.05"},
-      {"--damping", "0"},       {"--ball-radius", "0.3"},
-      {"--active-k", "20"}};
+      {"--limits", "segments"},   {"--limits", "axis"},
+      {"--active", "off"},        {"--active", "explicit", "--active-k", "5"},
+      {"--rate", "fixed:480"},    {"--region", "diamond"},
+      {"--region", "box"},        {"--scene", "push"},
+      {"--scene", "impulse"},     {"--scene", "fall"},
+      {"--scene", "slope"},       {"--scene", "box"},
+      {"--preset", "tackle"},     {"--preset", "shot"},
+      {"--pose", "rest"},         {"--pose", "guard"},
+      {"--sex", "female"},        {"--mass", "120"},
+      {"--active-delay", "0.05"}, {"--damping", "0"},
+      {"--ball-radius", "0.3"},   {"--active-k", "20"}};
   for (std::vector<std::string> options : variations) {
     SCOPED_TRACE(options[0] + " " + options[1]);
     options.insert(options.begin(), {"bake", "mannequin", "--json", "--duration", "0.5"});
