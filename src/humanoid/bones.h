@@ -44,7 +44,7 @@ Error input_error(const Character& character, std::string what, std::string fix)
 /// Lowest common ancestor (a node is its own ancestor); -1 when there is none.
 int common_ancestor(const Skeleton& skeleton, int a, int b);
 inline bool is_at_or_below(const Skeleton& skeleton, int top, int node) {
-  return top == node || skeleton.is_ancestor(top, node);
+  return node >= 0 && (top == node || skeleton.is_ancestor(top, node));
 }
 /// Nodes from `top` (exclusive) down to `node` (inclusive), top first; empty when `node` is not below `top`.
 std::vector<int> path_below(const Skeleton& skeleton, int top, int node);

@@ -10,7 +10,22 @@ Vec3 dominant_axis(const Vec3& v) {
   return (v[axis] < 0.0 ? -1.0 : 1.0) * Vec3::Unit(axis);
 }
 
+namespace {
+
+/// Every limb bone has a length to speak of.
+bool has_limbs(const Figure& f) {
+  const double least = 0.005 * f.rise().norm();
+  for (int side = 0; side < 2; ++side)
+    for (const Vec3& link : {f.link(kThigh[side], kShank[side]), f.link(kShank[side], kFoot[side]),
+                             f.link(kUpperArm[side], kForearm[side]), f.link(kForearm[side], kHand[side])})
+      if (!(link.norm() > least)) return false;
+  return true;
+}
+
+}  // namespace
+
 bool humanlike(const Figure& f) {
+  if (!has_limbs(f)) return false;
   const Vec3 trunk = f.shoulders() - f.hips();
   const Vec3 across_hips = f.link(Segment::thigh_l, Segment::thigh_r);
   const Vec3 across_shoulders = f.link(Segment::upperarm_l, Segment::upperarm_r);

@@ -149,7 +149,7 @@ struct FrameBuilder {
   Vec3 anterior() const { return w.col(0); }
   Vec3 place(int node) const { return figure.world[node].translation(); }
 
-  /// Item 2: how far the toes lie in front of the ankles; 0 where there are none.
+  /// Rule 2: how far the toes lie in front of the ankles; 0 where there are none.
   double toes_forward() const {
     double sum = 0.0;
     for (int side = 0; side < 2; ++side) {
@@ -182,7 +182,7 @@ struct FrameBuilder {
     return std::nullopt;
   }
 
-  /// Items 3 to 8.
+  /// Rules 3 to 8.
   void build(double clavicle_elevation) {
     for (int side = 0; side < 2; ++side) {
       const Segment clavicle = side == 0 ? Segment::clavicle_l : Segment::clavicle_r;
@@ -222,8 +222,7 @@ struct FrameBuilder {
     const Mat3 thigh_frame = shortest_rotation(thigh, -up).conjugate().toRotationMatrix() * w;
     frame[index(kThigh[side])] = thigh_frame;
     frame[index(kShank[side])] = frame_yz(-shank, thigh_frame.col(2));
-    // Item 8: y up once the shank is vertical. A bent knee (or a foot on a bone of its own) means a flat foot
-    // already.
+    // Rule 8. Below a bent knee, or on a bone of its own, the foot lies flat already.
     const bool spread = angle(thigh, shank) < radians(20) && !humanoid.segments[index(kFoot[side])].detached;
     const Quat upright =
         spread && angle(shank, -up) > radians(8) ? shortest_rotation(shank, -up) : Quat::Identity();
@@ -237,8 +236,8 @@ struct FrameBuilder {
   }
 };
 
-/// How far raised arms hold the shoulders up (ANATOMICAL_FRAMES 2.3; an A-pose as RANGE_OF_MOTION has it),
-/// radians.
+/// How far raised arms hold the shoulders up against the hanging arm (an assumption: mocap of one suit showed
+/// 14 to 25 degrees for a T-pose), radians.
 double clavicle_elevation(RestPoseClass pose) {
   if (pose == RestPoseClass::t_pose) return radians(8);
   return pose == RestPoseClass::a_pose ? radians(3) : 0.0;

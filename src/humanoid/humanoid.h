@@ -43,12 +43,12 @@ struct Humanoid {
   /// Takes the pelvis's motion: the pelvis node, or the lowest node above pelvis, thighs and spine where
   /// those do not hang on the pelvis node.
   int root = -1;
-  Similarity world_from_file;  // metres, y up; no translation
-  double height_m = 0.0;       // sole to crown, standing
-  char up_axis = 'y';          // of the file
-  RestPoseClass rest_pose = RestPoseClass::other;
-  /// Pose the frames were read from: the rest pose, or another one when the rest pose is of no use (a BVH
-  /// whose zero pose is not a pose).
+  Similarity world_from_file;                      // metres, y up; no translation
+  double height_m = 0.0;                           // sole to crown, standing
+  char up_axis = 'y';                              // of the file
+  RestPoseClass rest_pose = RestPoseClass::other;  // of the file's rest pose
+  /// Pose the frames were read from and standing poses start from: the rest pose; the bind pose where the
+  /// rest pose is a crouch; the best frame of a motion whose zero pose is not a pose.
   Pose reference;
   /// Anatomical frame of each segment in its node: world_from_segment = world_from_node * this (rotations).
   /// Axes in the neutral pose (upright, arms hanging, palms to the thighs, feet forward): x anterior, y up,
@@ -80,14 +80,17 @@ using BodyPose = PerSegment<Rigid>;
 /// Segments of `pose` as the rig's nodes have them.
 BodyPose segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose);
 
-/// The same with the free rolls chosen like a human body: the forearm takes the hand's twist, the trunk's
-/// bend is split 0.46/0.54/0.30, upper arm and thigh are rolled into the plane of elbow and knee, the shank
-/// takes 60 % of the toe-out. Positions are unchanged.
+/// The same with the free rolls chosen like a human body, because rigs put them on whatever bone they like:
+/// (a) the forearm takes the hand's twist, (b) the trunk's side bend, flexion and turn are split 0.46, 0.54,
+/// 0.30 to the abdomen and the rest to the chest, (c) upper arm and thigh are rolled until elbow and knee
+/// bend in their hinge plane (weight 0 below 4 degrees of bend, 1 above 14; not by more than 60), (d) the
+/// shank takes 60 % of the toe-out, 18 in to 24 degrees out. Positions are unchanged; fused segments follow
+/// the segment they move with.
 BodyPose canonical_segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose);
 
-/// Poses the skeleton: `base`, with every segment turned and the pelvis moved by what takes `from` (the
-/// segments of `base`) to `to`. Nodes of no segment keep their local transform. Inverse of segments_of up to
-/// the rounding of sqrt(eps) for single-node chains and uniform scales.
+/// Poses the skeleton: `base`, with every segment turned and the pelvis (and detached segments) moved by what
+/// takes `from` (the segments of `base`) to `to`. Nodes of no segment keep their local transform. Inverse of
+/// segments_of for single-node chains and uniform scales, negative and mirrored ones included.
 Pose pose_skeleton(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& base, const BodyPose& from,
                    const BodyPose& to);
 

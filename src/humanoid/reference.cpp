@@ -20,8 +20,8 @@ namespace {
 
 // ------------------------------------------------------------------------------------------
 
-/// How far the lowest joint of a motion moves along `up`, file units: little along the true one, for the floor
-/// carries the figure, whether it stands or lies.
+/// How far the lowest joint of a motion moves along `up`, file units: little along the true one, for the
+/// floor carries the figure, whether it stands or lies.
 double spread_of_lowest(const std::vector<Figure>& figures, const Vec3& up) {
   double least = 1e300, most = -1e300;
   for (const Figure& figure : figures) {
@@ -33,8 +33,8 @@ double spread_of_lowest(const std::vector<Figure>& figures, const Vec3& up) {
   return most - least;
 }
 
-/// The up axis of a motion: where the head is above the feet, in the mean or, for a figure that spends most of
-/// the time on the ground, at the beginning.
+/// The up axis of a motion: where the head is above the feet, in the mean or, for a figure that spends most
+/// of the time on the ground, at the beginning.
 Vec3 up_of_motion(const Character& character, const Humanoid& humanoid) {
   std::vector<Figure> figures;
   for (const double t : sample_times(character.animations[0], 100))

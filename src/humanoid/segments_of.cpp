@@ -21,7 +21,7 @@ SwingAboutY split_about_y(const Quat& q) {
   return {log_rotation(q * about_y(-twist)), twist};
 }
 
-/// ANATOMICAL_FRAMES 2.4 (b): abdomen takes 0.46, 0.54, 0.30 of side bend, flexion and turn between pelvis
+/// (b): the abdomen takes 0.46, 0.54, 0.30 of side bend, flexion and turn between pelvis
 /// and chest, the ratio of the two joints' ranges.
 void split_trunk(BodyPose& body) {
   const Quat& pelvis = body[index(Segment::pelvis)].rotation;

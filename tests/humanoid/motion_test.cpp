@@ -73,7 +73,12 @@ TEST(Motion, ATPoseFrameReplacesAZeroPoseThatIsNone) {
   const int thigh = character.skeleton.find("mixamorig:LeftUpLeg");
   Pose kicking = standing;
   kicking[thigh].rotation = kicking[thigh].rotation * exp_rotation(Vec3(0.7, 0, 0));
-  set_motion(character, {kicking, kicking, standing, kicking});
+  Pose lowered = standing;  // nearer to the neutral pose, but no T-pose: the shoulders are down
+  for (const auto& [name, turn] : {std::pair("mixamorig:LeftArm", -1.5), {"mixamorig:RightArm", 1.5}}) {
+    const int arm = character.skeleton.find(name);
+    lowered[arm].rotation = exp_rotation(Vec3(0, 0, turn)) * lowered[arm].rotation;
+  }
+  set_motion(character, {lowered, kicking, standing, kicking});
   const Humanoid expected = mapped(original), found = mapped(character);
   EXPECT_EQ(found.rest_pose, RestPoseClass::other);
   const BodyPose want = segments_of(original.skeleton, expected, expected.reference);
