@@ -109,7 +109,7 @@ Result<ArticulatedBody> build_body(const Character& character, const Humanoid& h
                    "check the file's node transforms"};
     body.segments[s] = weigh(segment, ends[s], body.height_m, body.mass_kg, options.sex);
     if (!humanoid.segments[s].fused())
-      body.segments[s].shapes = {fit_shape(segment, ends[s], body.height_m, skin[s])};
+      body.segments[s].shapes = fit_shapes(segment, ends[s], body.height_m, skin[s]);
   }
   for (int j = 0; j < kJointCount; ++j) {
     const Rigid parent_from_world = segments[index(parent_of(joint_at(j)))].inverse();

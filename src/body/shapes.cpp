@@ -7,6 +7,8 @@ namespace ukemi {
 namespace {
 
 constexpr std::size_t kFewestVertices = 12;
+constexpr double kTrim = 0.02;    // share of the skin left out at either end of an extent: hair, buckles
+constexpr double kInside = 0.85;  // share of a limb's skin within its capsule
 
 struct Proportions {
   double radius;  // over stature
@@ -86,61 +88,93 @@ Shape capsule_between(const Vec3& from, const Vec3& to, double radius) {
   return shape;
 }
 
-/// Median distance of the skin from the axis, over the middle of the limb.
-double limb_radius(const Vec3& end, const std::vector<Vec3>& skin, double fallback) {
+/// Axis and radius of a limb's skin over the middle of the limb: the axis runs through the middle of the
+/// skin, parallel to the bone; most of the skin lies within the radius.
+struct LimbFit {
+  Vec3 offset = Vec3::Zero();
+  double radius = 0.0;
+};
+
+LimbFit fit_limb(const Vec3& end, const std::vector<Vec3>& skin, double fallback) {
   const double length2 = end.squaredNorm();
-  std::vector<double> distances;
+  std::vector<Vec3> aside;
   for (const Vec3& p : skin) {
     const double t = length2 > 0.0 ? p.dot(end) / length2 : 0.0;
-    if (t > 0.15 && t < 0.85) distances.push_back((p - t * end).norm());
+    if (t > 0.1 && t < 0.9) aside.push_back(p - t * end);
   }
-  return distances.size() < kFewestVertices ? fallback : percentile(std::move(distances), 0.5);
+  LimbFit fit{Vec3::Zero(), fallback};
+  if (aside.size() < kFewestVertices) return fit;
+  for (int axis = 0; axis < 3; ++axis) fit.offset[axis] = extent(aside, axis, 0.05).middle();
+  std::vector<double> distances;
+  for (const Vec3& p : aside) distances.push_back((p - fit.offset).norm());
+  fit.radius = percentile(std::move(distances), kInside);
+  return fit;
 }
 
 Shape limb(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
   const double table = proportions(segment).radius * height_m;
-  const double radius = std::clamp(limb_radius(end, skin, table), 0.3 * table, 2.5 * table);
-  // The caps of shank and forearm end at ankle and wrist: the heel is nearer to the ankle than a calf is
-  // thick.
-  if (ends_at_joint(segment))
-    return capsule_between(Vec3::Zero(), end.normalized() * std::max(0.0, end.norm() - radius), radius);
-  if (!is_hand(segment)) return capsule_between(Vec3::Zero(), end, radius);
-  double reach = end.norm() * 1.9;  // fingertip: the middle finger's base lies about half-way
-  if (skin.size() >= kFewestVertices) {
-    std::vector<double> along;
-    for (const Vec3& p : skin) along.push_back(p.dot(end.normalized()));
-    reach = percentile(std::move(along), 0.98);
+  const LimbFit fit = fit_limb(end, skin, table);
+  const double radius = std::clamp(fit.radius, 0.3 * table, 2.5 * table);
+  const Vec3 along = end.normalized();
+  double reach = end.norm();
+  if (is_hand(segment)) {
+    reach *= 1.9;  // fingertip: the middle finger's base lies about half-way
+    std::vector<double> reaches;
+    for (const Vec3& p : skin) reaches.push_back(p.dot(along));
+    if (reaches.size() >= kFewestVertices) reach = percentile(std::move(reaches), 0.98);
   }
-  return capsule_between(Vec3::Zero(), end.normalized() * std::max(reach - radius, 0.5 * end.norm()), radius);
+  // The caps of shank, forearm and hand end at ankle, wrist and fingertip: the heel is nearer to the ankle
+  // than a calf is thick.
+  if (ends_at_joint(segment) || is_hand(segment)) reach = std::max(reach - radius, 0.5 * end.norm());
+  return capsule_between(fit.offset, fit.offset + reach * along, radius);
 }
 
-Shape trunk(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
-  const Proportions table = proportions(segment);
+/// A capsule from side to side about the skin, or of the table's size about `centre`.
+Shape side_capsule(const Proportions& table, Vec3 centre, double height_m, const std::vector<Vec3>& skin) {
   double radius = table.radius * height_m;
   double width = table.width * height_m;
-  Vec3 centre = segment == Segment::pelvis ? Vec3(0.0, 0.02 * height_m, 0.0) : Vec3(0.5 * end);
   if (skin.size() >= kFewestVertices) {
-    const Extent depth = extent(skin, 0, 0.05);
-    const Extent across = extent(skin, 2, 0.05);
+    const Extent depth = extent(skin, 0, kTrim);
+    const Extent across = extent(skin, 2, kTrim);
     radius = std::clamp(0.5 * depth.size(), 0.4 * radius, 2.5 * radius);
     width = std::max(across.size(), 2.05 * radius);
-    centre = Vec3(depth.middle(), extent(skin, 1, 0.05).middle(), across.middle());
+    centre = Vec3(depth.middle(), extent(skin, 1, kTrim).middle(), across.middle());
   }
   const Vec3 half(0.0, 0.0, 0.5 * width - radius);
   return capsule_between(centre - half, centre + half, radius);
+}
+
+/// One capsule from side to side, two where the skin is much taller than deep (a chest).
+std::vector<Shape> trunk(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
+  const Proportions table = proportions(segment);
+  const Vec3 centre = segment == Segment::pelvis ? Vec3(0.0, 0.02 * height_m, 0.0) : Vec3(0.5 * end);
+  if (skin.size() >= 2 * kFewestVertices) {
+    const Extent up = extent(skin, 1, kTrim);
+    if (up.size() > 1.2 * extent(skin, 0, kTrim).size()) {
+      std::vector<Vec3> lower;
+      std::vector<Vec3> upper;
+      for (const Vec3& p : skin) (p.y() < up.middle() ? lower : upper).push_back(p);
+      return {side_capsule(table, centre, height_m, lower), side_capsule(table, centre, height_m, upper)};
+    }
+  }
+  return {side_capsule(table, centre, height_m, skin)};
 }
 
 Shape head(const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
   const double table = proportions(Segment::head).radius * height_m;
   if (skin.size() < kFewestVertices)
     return capsule_between(0.45 * end, end * (1.0 - table / end.norm()), table);
-  const Extent depth = extent(skin, 0, 0.03);
   const Extent up = extent(skin, 1, 0.01);
-  const Extent across = extent(skin, 2, 0.03);
+  std::vector<Vec3> skull;  // without the neck
+  for (const Vec3& p : skin)
+    if (p.y() > up.low + 0.4 * up.size()) skull.push_back(p);
+  const Extent depth = extent(skull, 0, kTrim);
+  const Extent across = extent(skull, 2, kTrim);
   const double radius = std::clamp(0.25 * (depth.size() + across.size()), 0.5 * table, 3.0 * table);
-  const double low = std::min(std::max(up.low, 0.0) + radius, up.high - radius - 0.01 * height_m);
-  return capsule_between({depth.middle(), low, across.middle()},
-                         {depth.middle(), up.high - radius, across.middle()}, radius);
+  const double high = up.high - radius;
+  const double low = std::min(up.low + 0.3 * up.size() + radius, high - 0.01 * height_m);
+  return capsule_between({depth.middle(), low, across.middle()}, {depth.middle(), high, across.middle()},
+                         radius);
 }
 
 Shape foot(const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
@@ -212,11 +246,12 @@ PerSegment<std::vector<Vec3>> skin_of_segments(const Character& character, const
   return result;
 }
 
-Shape fit_shape(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
+std::vector<Shape> fit_shapes(Segment segment, const Vec3& end, double height_m,
+                              const std::vector<Vec3>& skin) {
   if (is_trunk(segment)) return trunk(segment, end, height_m, skin);
-  if (segment == Segment::head) return head(end, height_m, skin);
-  if (is_foot(segment)) return foot(end, height_m, skin);
-  return limb(segment, end, height_m, skin);
+  if (segment == Segment::head) return {head(end, height_m, skin)};
+  if (is_foot(segment)) return {foot(end, height_m, skin)};
+  return {limb(segment, end, height_m, skin)};
 }
 
 }  // namespace ukemi

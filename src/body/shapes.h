@@ -12,7 +12,8 @@ namespace ukemi {
 PerSegment<std::vector<Vec3>> skin_of_segments(const Character& character, const Humanoid& humanoid,
                                                const Pose& pose, const BodyPose& segments);
 
-/// Shape of one segment. `end`: where the next segment (or the finger, toe or crown) begins, segment frame.
-Shape fit_shape(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin);
+/// Shapes of one segment. `end`: where the next segment (or the finger, toe or crown) begins, segment frame.
+std::vector<Shape> fit_shapes(Segment segment, const Vec3& end, double height_m,
+                              const std::vector<Vec3>& skin);
 
 }  // namespace ukemi
