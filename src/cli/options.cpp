@@ -162,13 +162,12 @@ void Options::group(const std::string& title) { parser_->group = title; }
 
 void Options::argument(const std::string& name, std::string& target, const std::string& help) {
   parser_->arguments.push_back(name);
-  CLI::Option* option =
-      parser_->app.add_option(name, CLI::callback_t([&target](const CLI::results_t& values) {
-                                target = values.front();
-                                return true;
-                              }),
-                              help);
-  option->type_name("")->type_size(1)->expected(1)->required();
+  CLI::callback_t take = [this, &target, name](const CLI::results_t& values) {
+    target = values.front();
+    if (target.empty() && !parser_->error) parser_->error = usage(name + " is empty", "name a file");
+    return true;
+  };
+  parser_->app.add_option(name, std::move(take), help)->type_name("")->type_size(1)->expected(1)->required();
 }
 
 void Options::custom(const std::string& names, const std::string& value,
@@ -289,7 +288,8 @@ Result<Options::Outcome> Options::parse(const std::vector<std::string>& argument
     return usage(error.what(), see);
   }
   if (parser_->error) return *parser_->error;
-  if (const auto extras = app.remaining(); !extras.empty()) return parser_->unknown(extras.front());
+  for (const std::string& extra : app.remaining())
+    if (extra != "--") return parser_->unknown(extra);
   return Outcome::run;
 }
 

@@ -87,6 +87,8 @@ TEST(Options, RefuseWhatIsWrongAndNameIt) {
   EXPECT_EQ(refused({"in.glb", "--fps", "3", "--fps", "4"}).what, "--fps is given 2 times");
   EXPECT_EQ(refused({"in.glb", "--keys", "al"}).fix, "did you mean 'all'?");
   EXPECT_EQ(refused({"in.glb", "-o", ""}).what, "--output: the file's name is empty");
+  EXPECT_EQ(refused({""}).what, "FILE is empty");
+  EXPECT_EQ(refused({"--", "in.glb", "more.glb"}).what, "unexpected argument 'more.glb'");
   EXPECT_EQ(refused({"in.glb", "--fps"}).kind, ErrorKind::usage);
 }
 
