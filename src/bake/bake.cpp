@@ -11,6 +11,7 @@
 #include "bake/report.h"
 #include "bake/sheet.h"
 #include "base/files.h"
+#include "body/ground.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -70,6 +71,9 @@ void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_t
 
 /// The clip on the character's own skeleton, where the file places the figure.
 void make_clip(const Character& character, BakeOutcome& outcome) {
+  outcome.ground_lift_max_m = lift_skin_above_floor(
+      outcome.simulation.trajectory.frames, outcome.simulation.trajectory.fps,
+      outermost_skin(character, outcome.humanoid, outcome.start.pose, outcome.start.segments, outcome.body));
   Trajectory in_file_place = outcome.simulation.trajectory;
   for (BodyPose& frame : in_file_place.frames)
     for (Rigid& segment : frame) segment.translation.y() += outcome.start.floor_m;

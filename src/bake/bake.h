@@ -68,8 +68,9 @@ struct BakeOutcome {
   RangeOfMotion range;                            // in force: widened joints included
   std::vector<std::pair<Joint, double>> widened;  // radians
   Scene scene;
-  SimulationResult simulation;  // trajectory above a floor at y = 0, its still tail trimmed
-  Clip clip;                    // where the file places the figure
+  SimulationResult simulation;     // trajectory above a floor at y = 0, its still tail trimmed
+  Clip clip;                       // where the file places the figure
+  double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
   ResampleError resample_error;
   BakeTimings timings_s;
 };

@@ -163,6 +163,7 @@ Json clip_json(const BakeSettings& settings, const BakeOutcome& outcome, const R
   Json json;
   json["frames"] = outcome.clip.frames.size();
   json["resample_position_max_m"] = outcome.resample_error.position_single_bones_max_m;
+  json["ground_lift_max_m"] = outcome.ground_lift_max_m;
   json["resample_position_shared_bends_max_m"] = outcome.resample_error.position_max_m;
   json["resample_rotation_max_deg"] = outcome.resample_error.rotation_max_deg;
   json["keys"] = reduced.keys;

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "body/anthropometry.h"
+#include "body/ground.h"
 #include "body/shapes.h"
 #include "simulate/standing_man.h"
 
@@ -71,6 +72,21 @@ TEST(Shapes, AFootBoxStandsOnItsSole) {
   const Shape shape = fit_shapes(Segment::foot_l, {0.14, -0.05, 0.0}, 1.75, skin).front();
   EXPECT_NEAR(shape.segment_from_shape.translation.y() - 0.5 * shape.size.y(), -0.08, 1e-12);
   EXPECT_NEAR(shape.size.x(), 0.26, 1e-12);
+}
+
+TEST(Ground, FramesBelowTheFloorAreRaisedSmoothlyAndTheFirstStays) {
+  PerSegment<std::vector<Vec3>> skin;
+  skin[index(Segment::chest)] = {Vec3(0.0, -0.1, 0.0), Vec3(0.0, 0.1, 0.0)};
+  std::vector<BodyPose> frames(121);
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    for (Rigid& segment : frames[i])
+      segment.translation.y() = i < 60 ? 0.2 : 0.08;  // the skin is then 20 mm too low
+  EXPECT_NEAR(lift_skin_above_floor(frames, 60.0, skin), 0.015, 1e-12);
+  EXPECT_EQ(frames[0][0].translation.y(), 0.2);
+  EXPECT_EQ(frames[30][0].translation.y(), 0.2);
+  for (std::size_t i = 60; i < frames.size(); ++i) EXPECT_NEAR(frames[i][0].translation.y(), 0.095, 1e-12);
+  for (std::size_t i = 40; i < 60; ++i)
+    EXPECT_LT(frames[i][0].translation.y() - frames[i - 1][0].translation.y(), 0.0025) << "no pop";
 }
 
 }  // namespace
