@@ -114,7 +114,11 @@ LimbFit fit_limb(const Vec3& end, const std::vector<Vec3>& skin, double fallback
 Shape limb(Segment segment, const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
   const double table = proportions(segment).radius * height_m;
   const LimbFit fit = fit_limb(end, skin, table);
-  const double radius = std::clamp(fit.radius, 0.3 * table, 2.5 * table);
+  // A hand is flat: half its thickness, whatever its width.
+  const bool flat = is_hand(segment) && skin.size() >= kFewestVertices;
+  const double fitted =
+      flat ? 0.5 * std::min(extent(skin, 0, kTrim).size(), extent(skin, 2, kTrim).size()) : fit.radius;
+  const double radius = std::clamp(fitted, 0.3 * table, 2.5 * table);
   const Vec3 along = end.normalized();
   double reach = end.norm();
   if (is_hand(segment)) {
