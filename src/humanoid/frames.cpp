@@ -58,15 +58,20 @@ struct Unit {
   std::string warning;
 };
 
+// A stated unit is believed for a child and for a tall cartoon; asset packs of any other size mean humans,
+// and a blow of human strength would do nothing to a body of two tonnes.
+constexpr double kShortest = 0.3;  // m
+constexpr double kTallest = 3.0;   // m
+
 /// The unit that makes the figure a human of 1.7 m.
 Unit guess_unit(const Character& character, double height) {
   constexpr double kCmu = 0.056444;  // cgspeed conversions of the CMU data: 1/0.45 inches
-  if (character.format == SourceFormat::gltf && height >= 0.3 && height <= 30.0) return {1.0, {}};
+  if (character.format == SourceFormat::gltf && height >= kShortest && height <= kTallest) return {1.0, {}};
   double best = 0.0, best_error = 1e300;
   for (const double unit : {1.0, 0.01, 0.0254, 0.001, 0.1, kCmu, 0.01 * kCmu}) {
     const double metres = unit * height;
     const double error = std::abs(std::log(metres / 1.7));
-    if (metres >= 0.8 && metres <= 2.4 && error < best_error) {
+    if (metres >= 1.2 && metres <= 2.4 && error < best_error) {
       best = unit;
       best_error = error;
     }
@@ -83,7 +88,7 @@ Unit choose_unit(const Character& character, const HumanoidOptions& options, dou
   if (options.metres_per_unit) return {*options.metres_per_unit, {}};
   if (character.metres_per_unit) {
     const double metres = *character.metres_per_unit * height;
-    if (metres >= 0.3 && metres <= 12.0) return {*character.metres_per_unit, {}};
+    if (metres >= kShortest && metres <= kTallest) return {*character.metres_per_unit, {}};
     Unit unit = guess_unit(character, height);
     unit.warning = fmt::format(
         "the file's unit ({} m) would make the character {:.3g} m tall; one unit is taken as "

@@ -104,9 +104,14 @@ TEST(Humanoid, TakesUnitUpAndHeightFromTheUser) {
               1.2, 1e-12);
 }
 
-TEST(Humanoid, AGltfGiantStaysAGiant) {
-  EXPECT_NEAR(mapped(figure({.unit = 5.0})).height_m, 8.7, 0.3);
+TEST(Humanoid, AChildAndATallCartoonKeepTheirHeightAndAGiantBecomesAHuman) {
+  EXPECT_NEAR(mapped(figure({.unit = 1.6})).height_m, 2.8, 0.1);
   EXPECT_NEAR(mapped(figure({.unit = 0.5})).height_m, 0.87, 0.03);
+  Diagnostics diagnostics;
+  const auto giant = map_humanoid(figure({.unit = 5.0}), {}, diagnostics);
+  ASSERT_TRUE(giant);
+  EXPECT_NEAR(giant->height_m, 1.741, 1e-9);
+  EXPECT_EQ(diagnostics.warnings().size(), 1u);
 }
 
 TEST(Humanoid, TheNeutralPoseHasAllFramesAligned) {
