@@ -89,30 +89,6 @@ void make_clip(const Character& character, BakeOutcome& outcome) {
     outcome.clip.marks.push_back({"rest", *figures.rest_time_s});
 }
 
-/// Everything up to the simulation's input.
-Status prepare(const Character& character, const BakeSettings& settings, BakeOutcome& outcome,
-               Diagnostics& diagnostics) {
-  outcome.reaction = reaction_name(settings);
-  auto range = load_range_of_motion(settings.region);
-  if (!range) return range.error();
-  outcome.range = std::move(*range);
-  auto humanoid = map_humanoid(character, settings.humanoid, diagnostics);
-  if (!humanoid) return humanoid.error();
-  outcome.humanoid = std::move(*humanoid);
-  auto start = start_of(character, outcome.humanoid, settings, diagnostics);
-  if (!start) return start.error();
-  outcome.start = std::move(*start);
-  auto body = build_body(character, outcome.humanoid, outcome.start.pose, outcome.start.segments,
-                         BodyOptions{settings.mass_kg.value_or(0.0), settings.sex}, diagnostics);
-  if (!body) return body.error();
-  outcome.body = std::move(*body);
-  widen_for_start(outcome, diagnostics);
-  auto scene = scene_of(settings, outcome.start.segments[index(Segment::pelvis)].rotation);
-  if (!scene) return scene.error();
-  outcome.scene = *scene;
-  return Done{};
-}
-
 /// Every output's bytes, before the first is written.
 struct Prepared {
   fs::path path;
@@ -180,11 +156,35 @@ Status check_settings(const std::string& character, const BakeSettings& settings
   return check_outputs(character, settings);
 }
 
-Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics) {
+Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings& settings,
+                                 Diagnostics& diagnostics) {
   BakeOutcome outcome;
+  outcome.reaction = reaction_name(settings);
+  auto range = load_range_of_motion(settings.region);
+  if (!range) return range.error();
+  outcome.range = std::move(*range);
+  auto humanoid = map_humanoid(character, settings.humanoid, diagnostics);
+  if (!humanoid) return humanoid.error();
+  outcome.humanoid = std::move(*humanoid);
+  auto start = start_of(character, outcome.humanoid, settings, diagnostics);
+  if (!start) return start.error();
+  outcome.start = std::move(*start);
+  auto body = build_body(character, outcome.humanoid, outcome.start.pose, outcome.start.segments,
+                         BodyOptions{settings.mass_kg.value_or(0.0), settings.sex}, diagnostics);
+  if (!body) return body.error();
+  outcome.body = std::move(*body);
+  widen_for_start(outcome, diagnostics);
+  auto scene = scene_of(settings, outcome.start.segments[index(Segment::pelvis)].rotation);
+  if (!scene) return scene.error();
+  outcome.scene = *scene;
+  return outcome;
+}
+
+Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics) {
   Stopwatch watch;
-  if (const Status status = prepare(character, settings, outcome, diagnostics); !status)
-    return status.error();
+  auto prepared = prepare_bake(character, settings, diagnostics);
+  if (!prepared) return prepared.error();
+  BakeOutcome outcome = std::move(*prepared);
   outcome.timings_s.load = watch.lap();
   auto simulation = simulate(outcome.body, outcome.range, outcome.start.state, outcome.scene,
                              settings.simulation, diagnostics);

@@ -95,6 +95,11 @@ std::string reaction_name(const BakeSettings& settings);
 /// twice the same). Errors: usage, output.
 Status check_settings(const std::string& character, const BakeSettings& settings);
 
+/// What the simulation is given: everything of a bake but its simulation, clip and timings. Errors: those of
+/// the stages.
+Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings& settings,
+                                 Diagnostics& diagnostics);
+
 /// Runs the stages on a loaded character. Errors: those of the stages.
 Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics);
 

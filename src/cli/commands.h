@@ -11,6 +11,7 @@ using Arguments = std::vector<std::string>;
 int bake_command(const Arguments& arguments);
 int inspect_command(const Arguments& arguments);
 int render_command(const Arguments& arguments);
+int compare_command(const Arguments& arguments);
 int diff_command(const Arguments& arguments);
 
 /// The whole command line without the program's name.

@@ -3,23 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/canvas.h"
-#include "render/font.h"
+#include "render/page.h"
 #include "render/staging.h"
-#include "render/texture.h"
 
 namespace ukemi {
 namespace {
 
-constexpr int kLongestTextureSide = 1024;
 constexpr int kLongestPageSide = 32000;
-
-constexpr Color kPage = hex(0xFBF9F6);
-constexpr Color kCellBorder = hex(0xDDD5C9);
-constexpr Color kInk = hex(0x2E2A26);
-constexpr Color kSoftInk = hex(0x7D746A);
-constexpr Color kAccent = hex(0xC23B22);
-constexpr Color kPaper = hex(0xFFFFFF);
 
 Error input_error(const Shot& shot, std::string what, std::string fix) {
   return {ErrorKind::input, shot.character ? shot.character->path.string() : "", 0, 0, "", std::move(what),
@@ -69,30 +59,6 @@ Status check_finite(const Shot& shot, const JointPaths& joints) {
             fmt::format("frame {} of the clip '{}' has a joint that is nowhere", frame, shot.clip->name),
             "check the clip's values");
   return Done{};
-}
-
-/// Only the images that a visible part shows.
-std::vector<Picture> decode_textures(const Character& character) {
-  std::vector<Picture> pictures(character.images.size());
-  for (const MeshPart& part : character.parts) {
-    if (part.indices.empty() || part.uvs.empty() || part.material < 0) continue;
-    const int image = character.materials[part.material].base_color_image;
-    if (image >= 0 && pictures[image].rgba.empty())
-      pictures[image] = decode_image(character.images[image], kLongestTextureSide);
-  }
-  return pictures;
-}
-
-struct Fonts {
-  Font regular, bold;
-};
-
-Result<Fonts> open_fonts() {
-  auto regular = Font::open(FontStyle::regular);
-  if (!regular) return regular.error();
-  auto bold = Font::open(FontStyle::bold);
-  if (!bold) return bold.error();
-  return Fonts{std::move(*regular), std::move(*bold)};
 }
 
 /// Places on the page, pixels. Everything but the cells grows with their width.

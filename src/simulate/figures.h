@@ -29,6 +29,8 @@ class Recorder {
 
   LimitFigures limits(bool projected) const;
   SimulationFigures figures() const;
+  /// Of the samples outside, rad, in the order of time.
+  const std::vector<double>& excesses() const { return outside_; }
 
  private:
   struct Turning {

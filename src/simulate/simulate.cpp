@@ -83,9 +83,12 @@ BodyPose between(const BodyPose& a, const BodyPose& b, double u) {
 
 class Simulation {
  public:
-  Simulation(const ArticulatedBody& body, const RangeOfMotion& range, const ActiveThresholds& thresholds,
-             const StartState& start, const Scene& scene, const SimulationSettings& settings)
+  /// `judged`: range that the figures are taken against; null: the range in force.
+  Simulation(const ArticulatedBody& body, const RangeOfMotion& range, const RangeOfMotion* judged,
+             const ActiveThresholds& thresholds, const StartState& start, const Scene& scene,
+             const SimulationSettings& settings)
       : settings_(settings),
+        judged_(judged),
         stepping_(stepping_of(settings)),
         direction_(scene.direction),
         model_(world_, body, range),
@@ -112,7 +115,11 @@ class Simulation {
     set_erp(base_h());
   }
 
-  SimulationResult run(Diagnostics& diagnostics);
+  void run(Diagnostics& diagnostics);
+  /// Of what has been run; takes the trajectory.
+  SimulationResult result();
+  const std::vector<double>& excesses() const { return recorder_.excesses(); }
+  double time_s() const { return stepping_.tick_s * static_cast<double>(ticks_); }
   void poison() { world_.poison(); }
 
  private:
@@ -127,6 +134,7 @@ class Simulation {
   void take_step(double h);
   void accept(int ticks, const std::vector<double>& excesses, double separation, Contacts next);
   std::vector<double> joint_excesses() const;
+  std::vector<double> judged_excesses() const;
   double worst_separation() const;
   double worst_joint_speed() const;
   double tone_share() const;
@@ -136,9 +144,9 @@ class Simulation {
   void check_speeds() const;
   void watch_rest(int ticks);
   void add_frames_until(double time_s);
-  double time_s() const { return stepping_.tick_s * static_cast<double>(ticks_); }
 
   SimulationSettings settings_;
+  const RangeOfMotion* judged_;
   Stepping stepping_;
   Vec3 direction_;  // of the blow
   OdeWorld world_;
@@ -223,6 +231,18 @@ std::vector<double> Simulation::joint_excesses() const {
   return result;
 }
 
+std::vector<double> Simulation::judged_excesses() const {
+  const BodyPose segments = model_.segments();
+  PerSegment<Quat> rotations;
+  for (int s = 0; s < kSegmentCount; ++s) rotations[s] = segments[s].rotation;
+  const PerJoint<SwingTwist> charts = charts_of(*judged_, rotations);
+  std::vector<double> result;
+  result.reserve(model_.joints().size());
+  for (const ModelJoint& joint : model_.joints())
+    result.push_back(excess(judged_->joints[index(joint.joint)], charts[index(joint.joint)]));
+  return result;
+}
+
 double Simulation::worst_separation() const {
   double worst = 0.0;
   for (const ModelJoint& joint : model_.joints()) worst = std::max(worst, model_.separation(joint));
@@ -273,7 +293,7 @@ bool Simulation::try_step(int ticks) {
   save();
   set_erp(h);
   take_step(h);
-  const std::vector<double> excesses = joint_excesses();
+  std::vector<double> excesses = joint_excesses();
   const double separation = worst_separation();
   const bool can_halve = stepping_.adaptive && ticks > 1;
   if (can_halve &&
@@ -281,6 +301,7 @@ bool Simulation::try_step(int ticks) {
     restore();
     return false;
   }
+  if (judged_ != nullptr) excesses = judged_excesses();
   if (projecting()) model_.project();
   Contacts next = collision_.find();
   if (can_halve && sinks(next)) {
@@ -360,7 +381,7 @@ std::vector<Rigid> Simulation::prop_poses() const {
   return poses;
 }
 
-SimulationResult Simulation::run(Diagnostics& diagnostics) {
+void Simulation::run(Diagnostics& diagnostics) {
   stage_.begin(diagnostics);
   recorder_.momentum(stage_.momentum_n_s());
   trajectory_.fps = settings_.fps;
@@ -383,6 +404,9 @@ SimulationResult Simulation::run(Diagnostics& diagnostics) {
   props_before_ = props_now_;
   before_s_ = time_s();
   add_frames_until(settings_.duration_s);
+}
+
+SimulationResult Simulation::result() {
   SimulationResult result;
   result.limits = recorder_.limits(projecting());
   result.figures = recorder_.figures();
@@ -417,13 +441,17 @@ double damping_of(const SimulationSettings& settings) {
   return settings.damping.value_or(settings.fixed_hz > 0.0 ? 0.0 : 10.0);
 }
 
-Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMotion& range,
-                                  const StartState& start, const Scene& scene,
-                                  const SimulationSettings& settings, Diagnostics& diagnostics) {
+namespace {
+
+/// Runs a scene; a run that fails leaves what it has.
+Result<Trial> try_scene(const ArticulatedBody& body, const RangeOfMotion& range, const RangeOfMotion* judged,
+                        const StartState& start, const Scene& scene, const SimulationSettings& settings,
+                        Diagnostics& diagnostics) {
   if (const auto refused = refuse(settings, scene)) return *refused;
   Result<ActiveThresholds> thresholds = load_active_thresholds(settings.active_file);
   if (!thresholds) return thresholds.error();
   std::unique_ptr<Simulation> simulation;
+  Trial trial;
   try {
     static const bool look_ahead = look_ahead_works();
     if (!look_ahead && settings.limits == Limits::edges)
@@ -434,27 +462,49 @@ Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMoti
                    "",
                    "this version of ODE does not take stops ahead as limits (StopERP -1), as 0.16.2 does",
                    "build with ODE 0.16.2, or use --limits segments"};
-    simulation = std::make_unique<Simulation>(body, range, *thresholds, start, scene, settings);
-    return simulation->run(diagnostics);
+    simulation = std::make_unique<Simulation>(body, range, judged, *thresholds, start, scene, settings);
+    simulation->run(diagnostics);
   } catch (const Diverged& diverged) {
-    return Error{
-        ErrorKind::simulation,
-        "",
-        0,
-        0,
-        std::string(name(diverged.segment)),
-        fmt::format("the simulation diverged at {:.3f} s: {:.3g} m/s", diverged.time_s, diverged.speed),
-        "use a weaker blow, a plausible --mass and --height, or --rate fixed:960"};
+    trial.failure =
+        Error{ErrorKind::simulation,
+              "",
+              0,
+              0,
+              std::string(name(diverged.segment)),
+              fmt::format("the simulation diverged at {:.3f} s: {:.3g} m/s", diverged.time_s, diverged.speed),
+              "use a weaker blow, a plausible --mass and --height, or --rate fixed:960"};
   } catch (const OdeFailure& failure) {
     if (simulation) simulation->poison();
-    return Error{ErrorKind::simulation,
-                 "",
-                 0,
-                 0,
-                 "",
-                 fmt::format("the physics engine failed: {}", failure.what()),
-                 "use a weaker blow, or a plausible --mass and --height"};
+    trial.failure = Error{ErrorKind::simulation,
+                          "",
+                          0,
+                          0,
+                          "",
+                          fmt::format("the physics engine failed: {}", failure.what()),
+                          "use a weaker blow, or a plausible --mass and --height"};
   }
+  if (!simulation) return *trial.failure;
+  trial.result = simulation->result();
+  trial.excesses = simulation->excesses();
+  trial.simulated_s = simulation->time_s();
+  return trial;
+}
+
+}  // namespace
+
+Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMotion& range,
+                                  const StartState& start, const Scene& scene,
+                                  const SimulationSettings& settings, Diagnostics& diagnostics) {
+  auto trial = try_scene(body, range, nullptr, start, scene, settings, diagnostics);
+  if (!trial) return trial.error();
+  if (trial->failure) return *trial->failure;
+  return std::move(trial->result);
+}
+
+Result<Trial> simulate_trial(const ArticulatedBody& body, const RangeOfMotion& range,
+                             const RangeOfMotion& judged, const StartState& start, const Scene& scene,
+                             const SimulationSettings& settings, Diagnostics& diagnostics) {
+  return try_scene(body, range, &judged == &range ? nullptr : &judged, start, scene, settings, diagnostics);
 }
 
 }  // namespace ukemi

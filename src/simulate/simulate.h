@@ -107,4 +107,17 @@ Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMoti
                                   const StartState& start, const Scene& scene,
                                   const SimulationSettings& settings, Diagnostics& diagnostics);
 
+/// A run as an experiment sees it: judged in a range of its own choice, and a failure is a result.
+struct Trial {
+  SimulationResult result;       // up to the failure, where there is one
+  std::vector<double> excesses;  // of the samples outside, rad
+  double simulated_s = 0.0;      // without a still end
+  std::optional<Error> failure;  // diverged
+};
+
+/// simulate(), with LimitFigures taken against `judged` instead of the range in force. Errors: usage.
+Result<Trial> simulate_trial(const ArticulatedBody& body, const RangeOfMotion& range,
+                             const RangeOfMotion& judged, const StartState& start, const Scene& scene,
+                             const SimulationSettings& settings, Diagnostics& diagnostics);
+
 }  // namespace ukemi

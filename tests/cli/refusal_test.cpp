@@ -16,7 +16,7 @@ using Refusal = Program;
 TEST_F(Refusal, OfNoOrUnknownCommands) {
   expect_refused({}, kMustChange, "no command");
   expect_refused({"bkae"}, kMustChange, "unknown command 'bkae'\n  fix: did you mean 'bake'?");
-  expect_refused({"xyzzyx"}, kMustChange, "choose one of: bake inspect render diff");
+  expect_refused({"xyzzyx"}, kMustChange, "choose one of: bake inspect render compare diff");
   expect_refused({"--vresion"}, kMustChange, "unknown option '--vresion'");
 }
 

@@ -1,0 +1,384 @@
+#include "bake/compare.h"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "bake/report.h"
+
+namespace ukemi {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kJudgedRegion = "human";
+constexpr double kYardstickHz = 480.0;
+constexpr double kActiveK = 20.0;      // 1/s
+constexpr double kPaperActiveK = 1.0;  // 1/s
+constexpr double kExplodedGain_j = 1000.0;
+constexpr double kExplodedSeparation_m = 0.2;
+constexpr double kMaxElevation = radians(15.0);
+
+/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers everywhere, which std distributions are not.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t next() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return z ^ (z >> 31);
+  }
+  /// In [low, high).
+  double uniform(double low, double high) {
+    return low + (high - low) * 0x1p-53 * static_cast<double>(next() >> 11);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// One hit with one method, and what it took.
+struct Run {
+  LimitFigures limits;
+  SimulationFigures figures;
+  std::vector<double> excesses;  // rad
+  bool exploded = false;
+  double simulated_s = 0.0;
+  double cpu_s = 0.0;
+  std::optional<Error> refused;
+};
+
+Run timed_run(const Comparison& comparison, const Method& method, const RandomHit& hit) {
+  Run run;
+  const double before = thread_seconds();
+  auto trial = run_hit(comparison, method, hit);
+  run.cpu_s = thread_seconds() - before;
+  if (!trial) {
+    run.refused = trial.error();
+    return run;
+  }
+  run.limits = trial->result.limits;
+  run.figures = trial->result.figures;
+  run.excesses = std::move(trial->excesses);
+  run.exploded = exploded(*trial);
+  run.simulated_s = trial->simulated_s;
+  return run;
+}
+
+/// All hits with one method, in the order of the hits.
+std::vector<Run> run_hits(const Comparison& comparison, const Method& method,
+                          const std::function<void()>& after_each) {
+  std::vector<Run> runs(comparison.hits.size());
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < runs.size(); i = next++) {
+      runs[i] = timed_run(comparison, method, comparison.hits[i]);
+      const std::lock_guard lock(mutex);
+      after_each();
+    }
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < comparison.settings.threads; ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  return runs;
+}
+
+/// The value that a share of 0.001 of `samples` lies above; `excesses` holds those above 0.
+double p999_deg(std::vector<double>& excesses, long samples) {
+  const auto above = static_cast<std::size_t>(std::floor(0.001 * static_cast<double>(samples)));
+  if (above >= excesses.size()) return 0.0;
+  const auto nth = excesses.begin() + static_cast<std::ptrdiff_t>(above);
+  std::nth_element(excesses.begin(), nth, excesses.end(), std::greater<>());
+  return degrees(*nth);
+}
+
+MethodFigures figures_of(const Method& method, const std::vector<Run>& runs) {
+  MethodFigures sum{.method = method};
+  std::vector<double> excesses;
+  double steps = 0.0, simulated_s = 0.0, cpu_s = 0.0;
+  int whole = 0;
+  for (const Run& run : runs) {
+    sum.samples += run.limits.samples;
+    sum.over_1deg += run.limits.over_1deg;
+    sum.over_1deg_by_hit.push_back(run.limits.over_1deg);
+    sum.exploded_hits.push_back(run.exploded);
+    excesses.insert(excesses.end(), run.excesses.begin(), run.excesses.end());
+    if (run.limits.excess_max_deg > sum.excess_max_deg) {
+      sum.excess_max_deg = run.limits.excess_max_deg;
+      sum.worst_joint = run.limits.worst_joint;
+    }
+    sum.joint_separation_max_m = std::max(sum.joint_separation_max_m, run.figures.joint_separation_max_m);
+    sum.energy_gain_max_j = std::max(sum.energy_gain_max_j, run.figures.energy_gain_max_j);
+    steps += static_cast<double>(run.figures.steps);
+    simulated_s += run.simulated_s;
+    cpu_s += run.cpu_s;
+    if (run.exploded) {
+      ++sum.exploded;
+      continue;
+    }
+    ++whole;
+    sum.angular_momentum_mean_kg_m2_s += run.figures.angular_momentum_mean_kg_m2_s;
+    sum.airborne_mean_s += run.figures.airborne_mean_s;
+  }
+  sum.excess_p999_deg = p999_deg(excesses, sum.samples);
+  sum.angular_momentum_mean_kg_m2_s /= std::max(whole, 1);
+  sum.airborne_mean_s /= std::max(whole, 1);
+  if (steps > 0.0) sum.us_per_step = 1e6 * cpu_s / steps;
+  if (simulated_s > 0.0) sum.cpu_s_per_s = cpu_s / simulated_s;
+  return sum;
+}
+
+SimulationSettings of_the_paper(Limits limits, Active active, double k, double duration_s) {
+  SimulationSettings settings;
+  settings.limits = limits;
+  settings.active = active;
+  settings.active_k = k;
+  settings.tone = 0.0;
+  settings.damping = 0.0;
+  settings.fixed_hz = kYardstickHz;
+  settings.stop_at_rest = false;
+  settings.duration_s = duration_s;
+  return settings;
+}
+
+double share(const MethodFigures& figures) {
+  return figures.samples > 0 ? static_cast<double>(figures.over_1deg) / static_cast<double>(figures.samples)
+                             : 0.0;
+}
+
+}  // namespace
+
+std::vector<RandomHit> random_hits(std::uint64_t seed, int count) {
+  Random random(seed);
+  std::vector<RandomHit> hits;
+  for (int i = 0; i < count; ++i) {
+    RandomHit hit;
+    hit.segment = segment_at(static_cast<int>(random.uniform(0.0, kSegmentCount)));
+    hit.from.azimuth = random.uniform(0.0, 2.0 * kPi);
+    hit.from.elevation = random.uniform(-kMaxElevation, kMaxElevation);
+    hit.mass_kg = random.uniform(5.0, 10.0);
+    hit.speed_m_s = random.uniform(5.0, 15.0);
+    hits.push_back(hit);
+  }
+  return hits;
+}
+
+Scene scene_of(const RandomHit& hit, const Quat& world_from_pelvis) {
+  Scene scene;
+  scene.kind = SceneKind::ball;
+  scene.target = hit.segment;
+  scene.direction = travel_direction(hit.from, world_from_pelvis);
+  scene.ball_mass_kg = hit.mass_kg;
+  scene.ball_speed_m_s = hit.speed_m_s;
+  scene.ball_radius_m = kHitBallRadius_m;
+  return scene;
+}
+
+std::string describe(const RandomHit& hit) {
+  return fmt::format("{} from {:.0f} degrees: {:.1f} kg at {:.1f} m/s", name(hit.segment),
+                     degrees(hit.from.azimuth), hit.mass_kg, hit.speed_m_s);
+}
+
+std::vector<Method> methods_to_compare(double duration_s) {
+  const auto paper = [&](Limits limits, Active active = Active::off, double k = kActiveK) {
+    return of_the_paper(limits, active, k, duration_s);
+  };
+  SimulationSettings ours;
+  ours.duration_s = duration_s;
+  SimulationSettings limp = ours;
+  limp.tone = 0.0;
+  limp.damping = 0.0;
+  return {{"a", paper(Limits::axis)},
+          {"b", paper(Limits::segments)},
+          {"b-euler", paper(Limits::segments_euler)},
+          {"c", paper(Limits::segments, Active::explicit_torque)},
+          {"c-k1", paper(Limits::segments, Active::explicit_torque, kPaperActiveK)},
+          {"ours", ours},
+          {"ours-limp", limp}};
+}
+
+bool exploded(const Trial& trial) {
+  return trial.failure || !(trial.result.figures.energy_gain_max_j <= kExplodedGain_j) ||
+         !(trial.result.figures.joint_separation_max_m <= kExplodedSeparation_m);
+}
+
+Result<Trial> run_hit(const Comparison& comparison, const Method& method, const RandomHit& hit) {
+  const BakeOutcome& prepared = comparison.prepared;
+  const Quat& pelvis = prepared.start.segments[index(Segment::pelvis)].rotation;
+  const bool own = comparison.settings.region == kJudgedRegion;
+  Diagnostics unsaid;
+  return simulate_trial(prepared.body, prepared.range, own ? prepared.range : comparison.judged,
+                        prepared.start.state, scene_of(hit, pelvis), method.simulation, unsaid);
+}
+
+Result<Comparison> compare(const std::string& character, const Character& loaded,
+                           const CompareSettings& settings, Diagnostics& diagnostics,
+                           const Progress& progress) {
+  BakeSettings bake;
+  bake.humanoid = settings.humanoid;
+  bake.pose = "stand";
+  bake.region = kJudgedRegion;
+  auto human = prepare_bake(loaded, bake, diagnostics);
+  if (!human) return human.error();
+  bake.region = settings.region;
+  Diagnostics said;
+  auto prepared = prepare_bake(loaded, bake, said);
+  if (!prepared) return prepared.error();
+  Comparison comparison{character,
+                        settings,
+                        std::move(*prepared),
+                        std::move(human->range),
+                        std::move(human->widened),
+                        random_hits(settings.seed, settings.hits),
+                        {}};
+
+  const std::vector<Method> methods = methods_to_compare(settings.duration_s);
+  const int total = settings.hits * static_cast<int>(methods.size());
+  int done = 0;
+  for (const Method& method : methods) {
+    const std::vector<Run> runs = run_hits(comparison, method, [&] {
+      ++done;
+      if (progress) progress(done, total);
+    });
+    for (const Run& run : runs)
+      if (run.refused) return *run.refused;
+    comparison.methods.push_back(figures_of(method, runs));
+  }
+  return comparison;
+}
+
+std::string comparison_json(const Comparison& comparison) {
+  Json json;
+  json["format"] = 1;
+  json["generator"] = generator();
+  json["character"] = comparison.character;
+  json["hits"] = comparison.settings.hits;
+  json["seed"] = comparison.settings.seed;
+  json["region"] = comparison.settings.region;
+  json["widened_deg"] = Json::object();
+  for (const auto& [joint, angle] : comparison.widened)
+    json["widened_deg"][std::string(name(joint))] = degrees(angle);
+  json["methods"] = Json::array();
+  for (const MethodFigures& figures : comparison.methods) {
+    Json method;
+    method["method"] = figures.method.name;
+    method["limits"] = name(figures.method.simulation.limits);
+    method["active"] = name(figures.method.simulation.active);
+    method["samples"] = figures.samples;
+    method["over_1deg"] = figures.over_1deg;
+    method["excess_p999_deg"] = figures.excess_p999_deg;
+    method["excess_max_deg"] = figures.excess_max_deg;
+    method["worst_joint"] = figures.worst_joint ? Json(name(*figures.worst_joint)) : Json(nullptr);
+    method["joint_separation_max_m"] = figures.joint_separation_max_m;
+    method["energy_gain_max_j"] = figures.energy_gain_max_j;
+    method["exploded"] = figures.exploded;
+    method["angular_momentum_mean_kg_m2_s"] = figures.angular_momentum_mean_kg_m2_s;
+    method["airborne_mean_s"] = figures.airborne_mean_s;
+    method["us_per_step"] = figures.us_per_step;
+    method["cpu_s_per_s"] = figures.cpu_s_per_s;
+    json["methods"].push_back(std::move(method));
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+namespace {
+
+std::string active_text(const SimulationSettings& simulation) {
+  if (simulation.active == Active::off) return "-";
+  return fmt::format("{} {:g}", name(simulation.active), simulation.active_k);
+}
+
+/// "0", "0.00012 %", "3.41 %"
+std::string percent(double share) {
+  if (share <= 0.0) return "0";
+  return share < 0.001 ? fmt::format("{:.2g} %", 100.0 * share) : fmt::format("{:.2f} %", 100.0 * share);
+}
+
+std::string joules(double value) {
+  return value < 1e5 ? fmt::format("{:.1f}", value) : fmt::format("{:.1e}", value);
+}
+
+std::vector<std::string> table_row(const MethodFigures& figures) {
+  return {figures.method.name,
+          std::string(name(figures.method.simulation.limits)),
+          active_text(figures.method.simulation),
+          fmt::format("{}", figures.samples),
+          fmt::format("{}", figures.over_1deg),
+          percent(share(figures)),
+          fmt::format("{:.3f}", figures.excess_p999_deg),
+          fmt::format("{:.2f}", figures.excess_max_deg),
+          figures.worst_joint ? std::string(name(*figures.worst_joint)) : "-",
+          fmt::format("{:.1f}", 1000.0 * figures.joint_separation_max_m),
+          joules(figures.energy_gain_max_j),
+          fmt::format("{}", figures.exploded),
+          fmt::format("{:.2f}", figures.angular_momentum_mean_kg_m2_s),
+          fmt::format("{:.2f}", figures.airborne_mean_s),
+          fmt::format("{:.0f}", figures.us_per_step),
+          fmt::format("{:.3f}", figures.cpu_s_per_s)};
+}
+
+/// Columns as wide as their longest entry; words to the left, numbers to the right.
+std::string aligned(const std::vector<std::vector<std::string>>& rows, const std::vector<bool>& words) {
+  std::vector<std::size_t> widths(words.size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line +=
+          words[i] ? fmt::format("{:<{}}  ", row[i], widths[i]) : fmt::format("{:>{}}  ", row[i], widths[i]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string comparison_text(const Comparison& comparison) {
+  std::vector<std::vector<std::string>> rows = {
+      {"method", "limits", "active", "joint", "over", "", "p99.9", "max", "worst", "apart", "gain", "ex-",
+       "spin", "in air", "us per", "cpu s"},
+      {"", "", "", "samples", "1 deg", "", "deg", "deg", "joint", "mm", "J", "ploded", "kg m2/s", "s", "step",
+       "per s"}};
+  for (const MethodFigures& figures : comparison.methods) rows.push_back(table_row(figures));
+  const std::vector<bool> words = {true, true,  true,  false, false, false, false, false,
+                                   true, false, false, false, false, false, false, false};
+  std::string text = fmt::format(
+      "{}: {} random hits (seed {}), methods in the region {}, judged against human\n\n",
+      comparison.character, comparison.settings.hits, comparison.settings.seed, comparison.settings.region);
+  text += aligned(rows, words);
+  for (const auto& [joint, angle] : comparison.widened)
+    text += fmt::format("{} widened by {:.1f} degrees to hold the start pose\n", name(joint), degrees(angle));
+  return text +
+         "\nover 1 deg, p99.9, max: how far joints lie outside the human range, every step, before any "
+         "clean-up\n"
+         "apart: joint separation; gain: energy without cause; exploded: diverged, gain above 1000 J or "
+         "apart "
+         "above 200 mm\n"
+         "spin: angular momentum in the second after the hit, in air: time without ground contact; means of "
+         "the hits that did not explode\n"
+         "a: each axis on its own; b: chords of the polygon, as exact rows, -euler: as stops of Euler "
+         "angles;\n"
+         "c: b and active restriction, k = 20 1/s, -k1: k = 1; ours: the default bake, -limp: without tone "
+         "and damping\n";
+}
+
+}  // namespace ukemi

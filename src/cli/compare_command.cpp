@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "bake/compare.h"
+#include "bake/compare_pictures.h"
+#include "base/files.h"
+#include "cli/character_options.h"
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/options.h"
+#include "load/load.h"
+
+namespace ukemi {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kMostHits = 10000;
+
+struct CompareRequest {
+  std::string character;
+  CompareSettings settings;
+  fs::path folder;
+  int show = 0;  // hit to draw, from 1; 0: chosen
+  bool json = false;
+  bool quiet = false;
+};
+
+Error usage(std::string what, std::string fix) {
+  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+/// A whole number from `low` to `high`. Errors: usage.
+template <typename Number>
+Status take_whole(std::string_view option, const std::string& text, Number low, Number high, Number& target) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [parsed, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || parsed != end || value < low || value > high)
+    return usage(fmt::format("{}: '{}' is not a whole number from {} to {}", option, text, low, high),
+                 fmt::format("give a whole number from {} to {}", low, high));
+  target = value;
+  return Done{};
+}
+
+void declare(Options& options, CompareRequest& request) {
+  CompareSettings& settings = request.settings;
+  options.argument("CHARACTER", request.character,
+                   "a .glb .gltf .vrm .fbx .dae .bvh file, or the word mannequin");
+  options.group("experiment");
+  options.custom(
+      "--hits", "N",
+      [&settings](const std::string& text) {
+        return take_whole("--hits", text, 1, kMostHits, settings.hits);
+      },
+      fmt::format("random hits for each method [default {}; 1 to {}]", settings.hits, kMostHits));
+  options.custom(
+      "--seed", "N",
+      [&settings](const std::string& text) {
+        return take_whole<std::uint64_t>("--seed", text, 0, UINT64_MAX, settings.seed);
+      },
+      fmt::format("of the hits [default {}]", settings.seed));
+  options.text("--region", "NAME|FILE", settings.region,
+               "range of motion that the methods keep to: human diamond box, or a TOML file; all are judged "
+               "against human");
+  options.number("--duration", "S", settings.duration_s, Range{0.1, 60.0}, "of each hit");
+  options.group("body");
+  declare_humanoid_options(options, settings.humanoid);
+  options.group("out");
+  options.path("-o,--output", request.folder,
+               "folder for compare.json, compare.txt and the pictures; made where it is missing");
+  options.custom(
+      "--show", "HIT",
+      [&request](const std::string& text) { return take_whole("--show", text, 1, kMostHits, request.show); },
+      "which hit is drawn, 1 to N [default: the one that (a) leaves the range in most]");
+  options.flag("--json", request.json, "JSON to stdout in place of the table");
+  options.flag("--quiet", request.quiet, "nothing to stdout, no warnings, no progress");
+}
+
+Status check_folder(const fs::path& folder) {
+  std::error_code error;
+  const fs::path holder = fs::exists(folder, error) ? folder : fs::absolute(folder, error).parent_path();
+  const auto cannot = [&](std::string why, std::string fix) {
+    return Error{ErrorKind::output, folder.string(), 0, 0, "", "cannot write: " + why, std::move(fix)};
+  };
+  if (!fs::is_directory(holder, error))
+    return holder == folder
+               ? cannot("is not a folder", "name a folder")
+               : cannot(fmt::format("there is no folder '{}'", holder.string()), "make the folder first");
+  if (access(holder.c_str(), W_OK | X_OK) != 0)
+    return cannot(fmt::format("the folder '{}' may not be written to", holder.string()),
+                  "choose another folder, or change its permissions");
+  return Done{};
+}
+
+Status check(const CompareRequest& request) {
+  if (request.json && request.quiet)
+    return usage("--json and --quiet exclude each other", "give one of them");
+  if (request.quiet && request.folder.empty())
+    return usage("nothing to write", "add -o DIR, or leave --quiet away");
+  if (request.show > request.settings.hits)
+    return usage(fmt::format("--show {} is beyond the last hit", request.show),
+                 fmt::format("give a number from 1 to {}, or more --hits", request.settings.hits));
+  return request.folder.empty() ? Status(Done{}) : check_folder(request.folder);
+}
+
+/// A line on stderr that is written over, and taken away at the end.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}
+  ~ProgressLine() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+  }
+  void operator()(int done, int total) const {
+    if (shown_) std::fputs(fmt::format("\rrun {} of {}", done, total).c_str(), stderr);
+  }
+
+ private:
+  bool shown_;
+};
+
+/// A comparison and what is to be written of it.
+struct Compared {
+  Comparison comparison;
+  std::vector<NamedPicture> pictures;
+};
+
+Result<Compared> run_comparison(const CompareRequest& request, Diagnostics& diagnostics) {
+  const auto path = character_path(request.character);
+  if (!path) return path.error();
+  const auto loaded = load_character(*path, LoadOptions{}, diagnostics);
+  if (!loaded) return loaded.error();
+  const ProgressLine line(!request.quiet && !request.json);
+  auto comparison = compare(request.character, *loaded, request.settings, diagnostics,
+                            [&line](int done, int total) { line(done, total); });
+  if (!comparison) return comparison.error();
+  Compared compared{std::move(*comparison), {}};
+  if (request.folder.empty()) return compared;
+  const int shown = request.show > 0 ? request.show - 1 : hit_to_show(compared.comparison);
+  auto pictures = comparison_pictures(*loaded, compared.comparison, shown);
+  if (!pictures) return pictures.error();
+  compared.pictures = std::move(*pictures);
+  return compared;
+}
+
+/// The files of the folder, written once everything is known.
+Status write_folder(const fs::path& folder, const Compared& compared) {
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error)
+    return Error{
+        ErrorKind::output,      folder.string(), 0, 0, "", "cannot make the folder: " + error.message(),
+        "choose another folder"};
+  for (const NamedPicture& picture : compared.pictures)
+    if (const Status status = write_file(folder / picture.name, picture.png); !status) return status.error();
+  if (const Status status = write_file(folder / "compare.json", comparison_json(compared.comparison));
+      !status)
+    return status.error();
+  return write_file(folder / "compare.txt", comparison_text(compared.comparison));
+}
+
+}  // namespace
+
+int compare_command(const Arguments& arguments) {
+  CompareRequest request;
+  request.settings.threads = std::max(1, std::min(2, static_cast<int>(std::thread::hardware_concurrency())));
+  Options options("compare",
+                  "hits a standing body with random balls, the same with every method of joint restriction, "
+                  "and measures how far the joints leave the human range");
+  declare(options, request);
+  const auto outcome = options.parse(arguments);
+  if (!outcome) return print_error(outcome.error());
+  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const Status status = check(request); !status) return print_error(status.error());
+
+  Diagnostics diagnostics;
+  const auto compared = run_comparison(request, diagnostics);
+  if (!request.quiet) print_warnings(diagnostics);
+  if (!compared) return print_error(compared.error());
+  if (!request.folder.empty())
+    if (const Status status = write_folder(request.folder, *compared); !status)
+      return print_error(status.error());
+  if (request.quiet) return 0;
+  return print_result(
+      request.json ? comparison_json(compared->comparison) : comparison_text(compared->comparison), 0);
+}
+
+}  // namespace ukemi

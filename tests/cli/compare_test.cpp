@@ -1,0 +1,61 @@
+// The experiment as a whole program: table, JSON, folder, refusals.
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+namespace ukemi {
+namespace {
+
+using Json = nlohmann::json;
+using Compare = Program;
+
+TEST_F(Compare, PrintsTheFiguresOfEveryMethodAsJson) {
+  const Ran ran = run({"compare", "mannequin", "--hits", "1", "--seed", "7", "--duration", "0.3", "--json"});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Json json = Json::parse(ran.out);
+  EXPECT_EQ(json["format"], 1);
+  EXPECT_EQ(json["character"], "mannequin");
+  EXPECT_EQ(json["hits"], 1);
+  EXPECT_EQ(json["seed"], 7);
+  EXPECT_EQ(json["region"], "human");
+  ASSERT_GE(json["methods"].size(), 6u);
+  for (const Json& method : json["methods"])
+    for (const char* key : {"method", "limits", "active", "samples", "over_1deg", "excess_p999_deg",
+                            "excess_max_deg", "worst_joint", "joint_separation_max_m", "energy_gain_max_j",
+                            "exploded", "angular_momentum_mean_kg_m2_s", "airborne_mean_s", "us_per_step"})
+      EXPECT_TRUE(method.contains(key)) << key;
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(Compare, WritesTableJsonAndPicturesIntoItsFolder) {
+  const Ran ran = run({"compare", "mannequin", "--hits", "1", "--duration", "0.3", "-o", "out"});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("b-euler"), std::string::npos);
+  EXPECT_EQ(read("out/compare.txt"), ran.out);
+  EXPECT_EQ(Json::parse(read("out/compare.json"))["seed"], 1);
+  for (const char* name : {"compare", "hit", "a", "b", "c", "ours", "unnatural"})
+    EXPECT_TRUE(read(std::string("out/") + name + ".png").starts_with("\x89PNG")) << name;
+}
+
+TEST_F(Compare, RefusesWhatMakesNoExperiment) {
+  constexpr int kMustChange = 2;
+  constexpr int kCannotWrite = 4;
+  const auto refused = [this](std::vector<std::string> options, int status, const std::string& what) {
+    options.insert(options.begin(), {"compare", "mannequin"});
+    expect_refused(options, status, what);
+  };
+  for (const char* hits : {"0", "-3", "2.5", "many", "1000000"})
+    refused({"--hits", hits}, kMustChange, "--hits: '" + std::string(hits) + "' is not a whole number");
+  refused({"--seed", "-1"}, kMustChange, "--seed");
+  refused({"--show", "4", "--hits", "3"}, kMustChange, "--show 4 is beyond the last hit");
+  refused({"--duration", "0"}, kMustChange, "--duration");
+  refused({"--hits", "1", "--region", "humna"}, kMustChange, "humna");
+  refused({"--json", "--quiet"}, kMustChange, "exclude each other");
+  refused({"--quiet"}, kMustChange, "nothing to write");
+  refused({"-o", "missing/out"}, kCannotWrite, "there is no folder");
+  expect_refused({"compare"}, kMustChange, "CHARACTER is missing");
+  expect_refused({"compare", "none.glb"}, kMustChange, "none.glb");
+}
+
+}  // namespace
+}  // namespace ukemi
