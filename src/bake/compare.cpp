@@ -63,9 +63,10 @@ struct Run {
 };
 
 Run timed_run(const Comparison& comparison, const Method& method, const RandomHit& hit) {
+  const Quat& pelvis = comparison.prepared.start.segments[index(Segment::pelvis)].rotation;
   Run run;
   const double before = thread_seconds();
-  auto trial = run_hit(comparison, method, hit);
+  auto trial = run_scene(comparison, method, scene_of(hit, pelvis));
   run.cpu_s = thread_seconds() - before;
   if (!trial) {
     run.refused = trial.error();
@@ -109,7 +110,8 @@ double p999_deg(std::vector<double>& excesses, long samples) {
 }
 
 MethodFigures figures_of(const Method& method, const std::vector<Run>& runs) {
-  MethodFigures sum{.method = method};
+  MethodFigures sum;
+  sum.method = method;
   std::vector<double> excesses;
   double steps = 0.0, simulated_s = 0.0, cpu_s = 0.0;
   int whole = 0;
@@ -218,13 +220,12 @@ bool exploded(const Trial& trial) {
          !(trial.result.figures.joint_separation_max_m <= kExplodedSeparation_m);
 }
 
-Result<Trial> run_hit(const Comparison& comparison, const Method& method, const RandomHit& hit) {
+Result<Trial> run_scene(const Comparison& comparison, const Method& method, const Scene& scene) {
   const BakeOutcome& prepared = comparison.prepared;
-  const Quat& pelvis = prepared.start.segments[index(Segment::pelvis)].rotation;
   const bool own = comparison.settings.region == kJudgedRegion;
   Diagnostics unsaid;
   return simulate_trial(prepared.body, prepared.range, own ? prepared.range : comparison.judged,
-                        prepared.start.state, scene_of(hit, pelvis), method.simulation, unsaid);
+                        prepared.start.state, scene, method.simulation, unsaid);
 }
 
 Result<Comparison> compare(const std::string& character, const Character& loaded,
@@ -299,11 +300,6 @@ std::string comparison_json(const Comparison& comparison) {
 
 namespace {
 
-std::string active_text(const SimulationSettings& simulation) {
-  if (simulation.active == Active::off) return "-";
-  return fmt::format("{} {:g}", name(simulation.active), simulation.active_k);
-}
-
 /// "0", "0.00012 %", "3.41 %"
 std::string percent(double share) {
   if (share <= 0.0) return "0";
@@ -316,8 +312,6 @@ std::string joules(double value) {
 
 std::vector<std::string> table_row(const MethodFigures& figures) {
   return {figures.method.name,
-          std::string(name(figures.method.simulation.limits)),
-          active_text(figures.method.simulation),
           fmt::format("{}", figures.samples),
           fmt::format("{}", figures.over_1deg),
           percent(share(figures)),
@@ -353,14 +347,13 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows, const std
 }  // namespace
 
 std::string comparison_text(const Comparison& comparison) {
-  std::vector<std::vector<std::string>> rows = {
-      {"method", "limits", "active", "joint", "over", "", "p99.9", "max", "worst", "apart", "gain", "ex-",
-       "spin", "in air", "us per", "cpu s"},
-      {"", "", "", "samples", "1 deg", "", "deg", "deg", "joint", "mm", "J", "ploded", "kg m2/s", "s", "step",
-       "per s"}};
+  std::vector<std::vector<std::string>> rows = {{"method", "joint", "over", "", "p99.9", "max", "worst",
+                                                 "apart", "gain", "ex-", "spin", "in air", "us per", "cpu s"},
+                                                {"", "samples", "1 deg", "", "deg", "deg", "joint", "mm", "J",
+                                                 "ploded", "kg m2/s", "s", "step", "per s"}};
   for (const MethodFigures& figures : comparison.methods) rows.push_back(table_row(figures));
-  const std::vector<bool> words = {true, true,  true,  false, false, false, false, false,
-                                   true, false, false, false, false, false, false, false};
+  std::vector<bool> words(rows.front().size(), false);
+  words[0] = words[7] = true;
   std::string text = fmt::format(
       "{}: {} random hits (seed {}), methods in the region {}, judged against human\n\n",
       comparison.character, comparison.settings.hits, comparison.settings.seed, comparison.settings.region);

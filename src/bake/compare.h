@@ -94,8 +94,8 @@ Result<Comparison> compare(const std::string& character, const Character& loaded
                            const CompareSettings& settings, Diagnostics& diagnostics,
                            const Progress& progress);
 
-/// One hit with one method, again.
-Result<Trial> run_hit(const Comparison& comparison, const Method& method, const RandomHit& hit);
+/// One scene with one method, on the comparison's body.
+Result<Trial> run_scene(const Comparison& comparison, const Method& method, const Scene& scene);
 
 /// `compare --json`, format 1. Figures are the same for the same seed, but for the CPU times.
 std::string comparison_json(const Comparison& comparison);

@@ -11,6 +11,7 @@
 namespace ukemi {
 namespace {
 
+constexpr const char* kLegend = "red: joints more than 1 degree outside the human range of motion";
 const double kMarked = radians(1.0);  // excess from which a joint is marked
 
 /// A joint outside its range in one frame.
@@ -59,8 +60,8 @@ void hold_last_frame(Trajectory& trajectory, double duration_s) {
 }
 
 Result<Shown> run_shown(const Character& character, const Comparison& comparison, const Method& method,
-                        const RandomHit& hit) {
-  auto trial = run_hit(comparison, method, hit);
+                        const Scene& scene) {
+  auto trial = run_scene(comparison, method, scene);
   if (!trial) return trial.error();
   Shown shown{method.name, std::move(*trial), {}, {}};
   Trajectory& trajectory = shown.trial.result.trajectory;
@@ -78,11 +79,11 @@ Result<Shown> run_shown(const Character& character, const Comparison& comparison
 
 std::string note_of(const Shown& shown) {
   const LimitFigures& limits = shown.trial.result.limits;
-  std::string note = fmt::format(
-      "{:.2f} % of the joint samples over 1 degree outside, at most {:.1f} degrees",
-      limits.samples > 0 ? 100.0 * static_cast<double>(limits.over_1deg) / static_cast<double>(limits.samples)
-                         : 0.0,
-      limits.excess_max_deg);
+  const double share =
+      limits.samples > 0 ? static_cast<double>(limits.over_1deg) / static_cast<double>(limits.samples) : 0.0;
+  std::string note = fmt::format("{} of the joint samples over 1 degree outside, at most {:.1f} degrees",
+                                 limits.over_1deg > 0 ? fmt::format("{:.3g} %", 100.0 * share) : "none",
+                                 limits.excess_max_deg);
   if (shown.trial.failure) note += ";  " + shown.trial.failure->what;
   return note;
 }
@@ -110,11 +111,57 @@ MarkedShot marked_shot(const Character& character, const Comparison& comparison,
   return row;
 }
 
-Result<NamedPicture> named(const std::string& name, const Result<Picture>& picture) {
-  if (!picture) return picture.error();
-  auto png = encode_png(*picture);
-  if (!png) return png.error();
-  return NamedPicture{name, std::move(*png)};
+/// The scene with a, b, c and ours.
+Result<std::vector<Shown>> run_all(const Character& character, const Comparison& comparison,
+                                   const Scene& scene) {
+  std::vector<Shown> runs;
+  for (const MethodFigures& figures : comparison.methods) {
+    const std::string& method = figures.method.name;
+    if (method != "a" && method != "b" && method != "c" && method != "ours") continue;
+    auto run = run_shown(character, comparison, figures.method, scene);
+    if (!run) return run.error();
+    runs.push_back(std::move(*run));
+  }
+  return runs;
+}
+
+/// They point into the runs.
+std::vector<MarkedShot> marked_shots(const Character& character, const Comparison& comparison,
+                                     const std::vector<Shown>& runs) {
+  std::vector<MarkedShot> rows;
+  for (const Shown& run : runs) rows.push_back(marked_shot(character, comparison, run));
+  return rows;
+}
+
+RowsOptions sheet_of(const Comparison& comparison, const std::string& what) {
+  RowsOptions options;
+  options.title = fmt::format("{}: {}", comparison.character, what);
+  options.notes = {kLegend};
+  return options;
+}
+
+/// A scene of the experiment that no random hit shows.
+struct StagedScene {
+  const char* file;
+  const char* title;
+  Scene scene;
+};
+
+std::vector<StagedScene> staged_scenes(const Quat& world_from_pelvis) {
+  Scene slope;
+  slope.kind = SceneKind::slope;
+  slope.target = Segment::thigh_l;
+  slope.direction = travel_direction({radians(30.0), 0.0}, world_from_pelvis);
+  slope.ball_mass_kg = 10.0;
+  slope.ball_speed_m_s = 6.0;
+  slope.ball_radius_m = 0.25;
+  Scene fall;
+  fall.kind = SceneKind::fall;
+  fall.direction = travel_direction({radians(140.0), 0.0}, world_from_pelvis);
+  fall.fall_height_m = 0.8;
+  fall.tip_speed_m_s = 2.0;
+  return {{"slope.png", "a ball of 10 kg rolls down a slope into the body at 6 m/s", slope},
+          {"fall.png", "the body tips over at 2 m/s and drops 0.8 m", fall}};
 }
 
 Result<Picture> draw_chart(const Comparison& comparison) {
@@ -138,7 +185,7 @@ Result<Picture> draw_chart(const Comparison& comparison) {
 }
 
 Result<Picture> draw_unnatural(const Comparison& comparison, const MarkedShot& row, const Shown& shown,
-                               const std::vector<std::string>& notes) {
+                               const std::string& what) {
   CloseUpOptions options;
   double most = 0.0;
   for (std::size_t frame = 0; frame < shown.outside.size(); ++frame) {
@@ -155,7 +202,7 @@ Result<Picture> draw_unnatural(const Comparison& comparison, const MarkedShot& r
     options.focus = row.markers[options.frame].front().place;
   }
   options.radius_m = 0.2 * comparison.prepared.humanoid.height_m;
-  options.notes = notes;
+  options.notes = {what, kLegend};
   return render_close_up(row, options);
 }
 
@@ -175,40 +222,33 @@ int hit_to_show(const Comparison& comparison) {
 
 Result<std::vector<NamedPicture>> comparison_pictures(const Character& character,
                                                       const Comparison& comparison, int shown) {
-  const RandomHit& hit = comparison.hits[shown];
-  std::vector<Shown> runs;
-  for (const MethodFigures& figures : comparison.methods) {
-    const std::string& method = figures.method.name;
-    if (method != "a" && method != "b" && method != "c" && method != "ours") continue;
-    auto run = run_shown(character, comparison, figures.method, hit);
-    if (!run) return run.error();
-    runs.push_back(std::move(*run));
-  }
-  std::vector<MarkedShot> rows;
-  for (const Shown& run : runs) rows.push_back(marked_shot(character, comparison, run));
-
-  const std::string what =
-      fmt::format("hit {} of seed {}: {}", shown + 1, comparison.settings.seed, describe(hit));
-  RowsOptions options;
-  options.title = fmt::format("{}: {}", comparison.character, what);
-  options.notes = {"red: joints more than 1 degree outside the human range of motion"};
+  const Quat& pelvis = comparison.prepared.start.segments[index(Segment::pelvis)].rotation;
+  const std::string hit = fmt::format("hit {} of seed {}: {}", shown + 1, comparison.settings.seed,
+                                      describe(comparison.hits[shown]));
+  const auto runs = run_all(character, comparison, scene_of(comparison.hits[shown], pelvis));
+  if (!runs) return runs.error();
+  const std::vector<MarkedShot> rows = marked_shots(character, comparison, *runs);
   std::vector<NamedPicture> pictures;
   const auto add = [&](const std::string& name, const Result<Picture>& picture) -> Status {
-    auto made = named(name, picture);
-    if (!made) return made.error();
-    pictures.push_back(std::move(*made));
+    if (!picture) return picture.error();
+    auto png = encode_png(*picture);
+    if (!png) return png.error();
+    pictures.push_back({name, std::move(*png)});
     return Done{};
   };
-  if (const Status status = add("compare.png", draw_chart(comparison)); !status) return status.error();
-  if (const Status status = add("hit.png", render_rows(rows, options)); !status) return status.error();
+  std::vector<Status> made = {add("compare.png", draw_chart(comparison)),
+                              add("hit.png", render_rows(rows, sheet_of(comparison, hit)))};
   for (std::size_t i = 0; i < rows.size(); ++i)
-    if (const Status status = add(runs[i].method + ".png", render_rows({rows[i]}, options)); !status)
-      return status.error();
-  options.notes.insert(options.notes.begin(), what);
-  if (const Status status =
-          add("unnatural.png", draw_unnatural(comparison, rows.front(), runs.front(), options.notes));
-      !status)
-    return status.error();
+    made.push_back(add((*runs)[i].method + ".png", render_rows({rows[i]}, sheet_of(comparison, hit))));
+  made.push_back(add("unnatural.png", draw_unnatural(comparison, rows.front(), runs->front(), hit)));
+  for (const StagedScene& staged : staged_scenes(pelvis)) {
+    const auto others = run_all(character, comparison, staged.scene);
+    if (!others) return others.error();
+    made.push_back(add(staged.file, render_rows(marked_shots(character, comparison, *others),
+                                                sheet_of(comparison, staged.title))));
+  }
+  for (const Status& status : made)
+    if (!status) return status.error();
   return pictures;
 }
 

@@ -20,9 +20,10 @@ struct NamedPicture {
 int hit_to_show(const Comparison& comparison);
 
 /// compare.png: excess 99.9th percentile, maximum, and share of samples over 1 degree, per method.
-/// hit.png: the hit `shown` with a, b, c and ours, one row each. a.png b.png c.png ours.png: each row alone.
-/// unnatural.png: the joint of (a) that is farthest outside, close up. Joints outside their range by more
-/// than 1 degree are marked in red. Errors: output when nothing can be drawn.
+/// hit.png: the hit `shown` with a, b, c and ours, one row each. slope.png, fall.png: the same of a ball that
+/// rolls down a slope into the body and of a body that tips over and drops. a.png b.png c.png ours.png: each
+/// row alone. unnatural.png: the joint of (a) that is farthest outside, close up. Joints outside their range
+/// by more than 1 degree are marked in red. Errors: output when nothing can be drawn.
 Result<std::vector<NamedPicture>> comparison_pictures(const Character& character,
                                                       const Comparison& comparison, int shown);
 

@@ -33,7 +33,7 @@ TEST_F(Compare, WritesTableJsonAndPicturesIntoItsFolder) {
   EXPECT_NE(ran.out.find("b-euler"), std::string::npos);
   EXPECT_EQ(read("out/compare.txt"), ran.out);
   EXPECT_EQ(Json::parse(read("out/compare.json"))["seed"], 1);
-  for (const char* name : {"compare", "hit", "a", "b", "c", "ours", "unnatural"})
+  for (const char* name : {"compare", "hit", "a", "b", "c", "ours", "unnatural", "slope", "fall"})
     EXPECT_TRUE(read(std::string("out/") + name + ".png").starts_with("\x89PNG")) << name;
 }
 
