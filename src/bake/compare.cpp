@@ -118,7 +118,7 @@ MethodFigures figures_of(const Method& method, const std::vector<Run>& runs) {
   for (const Run& run : runs) {
     sum.samples += run.limits.samples;
     sum.over_1deg += run.limits.over_1deg;
-    sum.over_1deg_by_hit.push_back(run.limits.over_1deg);
+    sum.excess_max_by_hit_deg.push_back(run.limits.excess_max_deg);
     sum.exploded_hits.push_back(run.exploded);
     excesses.insert(excesses.end(), run.excesses.begin(), run.excesses.end());
     if (run.limits.excess_max_deg > sum.excess_max_deg) {

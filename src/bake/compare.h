@@ -67,7 +67,7 @@ struct MethodFigures {
   double airborne_mean_s = 0.0;                // without ground contact
   double us_per_step = 0.0;                    // thread's CPU time
   double cpu_s_per_s = 0.0;                    // and per simulated second
-  std::vector<long> over_1deg_by_hit;
+  std::vector<double> excess_max_by_hit_deg;
   std::vector<bool> exploded_hits;
 };
 

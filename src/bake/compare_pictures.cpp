@@ -213,7 +213,7 @@ int hit_to_show(const Comparison& comparison) {
     return std::none_of(comparison.methods.begin(), comparison.methods.end(),
                         [&](const MethodFigures& figures) { return figures.exploded_hits[hit]; });
   };
-  const std::vector<long>& outside = comparison.methods.front().over_1deg_by_hit;
+  const std::vector<double>& outside = comparison.methods.front().excess_max_by_hit_deg;
   int best = 0;
   for (int hit = 1; hit < static_cast<int>(outside.size()); ++hit)
     if (std::pair(whole(hit), outside[hit]) > std::pair(whole(best), outside[best])) best = hit;

@@ -15,7 +15,7 @@ struct NamedPicture {
   std::vector<std::uint8_t> png;
 };
 
-/// Number, from 0, of the hit in which method (a) has the most samples outside, among those that no method
+/// Number, from 0, of the hit in which method (a) bends a joint farthest out, among those that no method
 /// exploded in (among all, where there is none).
 int hit_to_show(const Comparison& comparison);
 

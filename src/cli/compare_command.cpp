@@ -78,7 +78,7 @@ void declare(Options& options, CompareRequest& request) {
   options.custom(
       "--show", "HIT",
       [&request](const std::string& text) { return take_whole("--show", text, 1, kMostHits, request.show); },
-      "which hit is drawn, 1 to N [default: the one that (a) leaves the range in most]");
+      "which hit is drawn, 1 to N [default: the one in which (a) bends a joint farthest out]");
   options.flag("--json", request.json, "JSON to stdout in place of the table");
   options.flag("--quiet", request.quiet, "nothing to stdout, no warnings, no progress");
 }

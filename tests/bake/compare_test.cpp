@@ -162,10 +162,10 @@ TEST(Compare, PrintsATableWhoseLinesAreOneMethodEach) {
   EXPECT_NE(text.find("71.25  elbow_l"), std::string::npos) << text;
 }
 
-TEST(ComparePictures, ShowTheHitThatTheFirstMethodLeavesTheRangeInMostAmongThoseThatHold) {
+TEST(ComparePictures, ShowTheHitInWhichTheFirstMethodBendsAJointFarthestOutAmongThoseThatHold) {
   Comparison comparison;
   MethodFigures a, b;
-  a.over_1deg_by_hit = {10, 90, 40};
+  a.excess_max_by_hit_deg = {10, 90, 40};
   a.exploded_hits = {false, false, false};
   b.exploded_hits = {false, true, false};
   comparison.methods = {a, b};
