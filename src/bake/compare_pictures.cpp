@@ -238,8 +238,11 @@ Result<std::vector<NamedPicture>> comparison_pictures(const Character& character
   };
   std::vector<Status> made = {add("compare.png", draw_chart(comparison)),
                               add("hit.png", render_rows(rows, sheet_of(comparison, hit)))};
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    made.push_back(add((*runs)[i].method + ".png", render_rows({rows[i]}, sheet_of(comparison, hit))));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    RowsOptions alone = sheet_of(comparison, hit);
+    alone.only = i;
+    made.push_back(add((*runs)[i].method + ".png", render_rows(rows, alone)));
+  }
   made.push_back(add("unnatural.png", draw_unnatural(comparison, rows.front(), runs->front(), hit)));
   for (const StagedScene& staged : staged_scenes(pelvis)) {
     const auto others = run_all(character, comparison, staged.scene);

@@ -18,7 +18,7 @@ constexpr int kCellLabel = 30;  // height kept free for the time
 constexpr double kFarthest_m = 15.0;
 constexpr double kMarkerRadius = 0.035;  // m
 constexpr std::size_t kMostLabels = 3;   // in a cell
-constexpr double kTitleSize = 23, kTextSize = 14, kSmallSize = 12;
+constexpr double kTitleSize = 23, kRowSize = 16, kTextSize = 14, kSmallSize = 12;
 const Rgba kMarkerColor = srgb(0xE0201B, 0.92f);
 constexpr Color kMarkerInk = hex(0xC81410);
 
@@ -125,6 +125,22 @@ void draw_cell(Picture& page, const Fonts& fonts, Painter& painter, const Figure
   fonts.bold.draw(page, cell.x + 10, cell.y + 21, label, kTextSize, kInk);
 }
 
+/// Caption and cells; `first`: upper left corner of the row, size of a cell.
+void draw_row(Picture& page, const Fonts& fonts, Painter& painter, const Figure& figure,
+              const MarkedShot& row, const std::vector<Moment>& moments, const Staging& staging,
+              const Box& first) {
+  const double after = fonts.bold.draw(page, first.x, first.y + 22, row.shot.title, kRowSize, kInk);
+  if (!row.shot.notes.empty())
+    fonts.regular.draw(page, after + 14, first.y + 22, row.shot.notes.front(), kTextSize, kSoftInk);
+  for (std::size_t c = 0; c < moments.size(); ++c) {
+    const int frame = moments[c].frame;
+    const Box cell{first.x + static_cast<int>(c) * (first.width + kGap), first.y + kCaption, first.width,
+                   first.height};
+    draw_cell(page, fonts, painter, figure, row, frame, staging.at(frame), cell,
+              fmt::format("{:.2f} s", frame / row.shot.clip->fps), kSmallSize);
+  }
+}
+
 }  // namespace
 
 Result<Picture> render_rows(const std::vector<MarkedShot>& rows, const RowsOptions& options) {
@@ -155,21 +171,15 @@ Result<Picture> render_rows(const std::vector<MarkedShot>& rows, const RowsOptio
                                     static_cast<double>(kCellLabel) / options.cell_height);
   const int columns = static_cast<int>(moments.size());
   const int row_height = kCaption + options.cell_height + kGap;
-  Picture page =
-      blank(2 * kMargin + columns * (options.cell_width + kGap) - kGap,
-            heading_height(options.notes) + static_cast<int>(rows.size()) * row_height + kMargin, kPage);
+  const int drawn = options.only ? 1 : static_cast<int>(rows.size());
+  Picture page = blank(2 * kMargin + columns * (options.cell_width + kGap) - kGap,
+                       heading_height(options.notes) + drawn * row_height + kMargin, kPage);
   int y = draw_heading(page, *fonts, options.title, options.notes);
-  for (std::size_t r = 0; r < rows.size(); ++r, y += row_height) {
-    const double after = fonts->bold.draw(page, kMargin, y + 22, rows[r].shot.title, 16, kInk);
-    if (!rows[r].shot.notes.empty())
-      fonts->regular.draw(page, after + 14, y + 22, rows[r].shot.notes.front(), kTextSize, kSoftInk);
-    for (int c = 0; c < columns; ++c) {
-      const int frame = moments[c].frame;
-      const Box cell{kMargin + c * (options.cell_width + kGap), y + kCaption, options.cell_width,
-                     options.cell_height};
-      draw_cell(page, *fonts, **painter, figures[r], rows[r], frame, staging.at(frame), cell,
-                fmt::format("{:.2f} s", frame / shot.clip->fps), kSmallSize);
-    }
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (options.only && *options.only != r) continue;
+    draw_row(page, *fonts, **painter, figures[r], rows[r], moments, staging,
+             {kMargin, y, options.cell_width, options.cell_height});
+    y += row_height;
   }
   return page;
 }

@@ -2,6 +2,7 @@
 // in red.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct MarkedShot {
 struct RowsOptions {
   std::string title;
   std::vector<std::string> notes;
+  std::optional<std::size_t> only;  // this row alone, as the sheet of all rows shows it
   int columns = 8;
   int cell_width = 240;
   int cell_height = 290;
