@@ -322,7 +322,7 @@ std::vector<std::string> table_row(const MethodFigures& figures) {
           joules(figures.energy_gain_max_j),
           fmt::format("{}", figures.exploded),
           fmt::format("{:.2f}", figures.angular_momentum_mean_kg_m2_s),
-          fmt::format("{:.2f}", figures.airborne_mean_s),
+          fmt::format("{:.3f}", figures.airborne_mean_s),
           fmt::format("{:.0f}", figures.us_per_step),
           fmt::format("{:.3f}", figures.cpu_s_per_s)};
 }
@@ -353,7 +353,7 @@ std::string comparison_text(const Comparison& comparison) {
                                                  "ploded", "kg m2/s", "s", "step", "per s"}};
   for (const MethodFigures& figures : comparison.methods) rows.push_back(table_row(figures));
   std::vector<bool> words(rows.front().size(), false);
-  words[0] = words[7] = true;
+  words[0] = words[6] = true;
   std::string text = fmt::format(
       "{}: {} random hits (seed {}), methods in the region {}, judged against human\n\n",
       comparison.character, comparison.settings.hits, comparison.settings.seed, comparison.settings.region);

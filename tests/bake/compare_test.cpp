@@ -159,7 +159,7 @@ TEST(Compare, PrintsATableWhoseLinesAreOneMethodEach) {
   comparison.methods = {figures};
   const std::string text = comparison_text(comparison);
   EXPECT_NE(text.find("34567  3.46 %"), std::string::npos) << text;
-  EXPECT_NE(text.find("71.25  elbow_l"), std::string::npos) << text;
+  EXPECT_NE(text.find("71.25  elbow_l    0.0"), std::string::npos) << text;
 }
 
 TEST(ComparePictures, ShowTheHitInWhichTheFirstMethodBendsAJointFarthestOutAmongThoseThatHold) {
