@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "bake/frames.h"
 #include "bake/impact.h"
 #include "bake/outputs.h"
 #include "bake/report.h"
@@ -108,7 +109,9 @@ Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Chara
     if (!text) return text.error();
     return bytes_of(*text);
   }
-  const GltfOptions options{settings.clip_only, ""};
+  const SegmentFrames frames =
+      segment_frames(character.skeleton, outcome.humanoid, outcome.start.pose, outcome.start.segments);
+  const GltfOptions options{settings.clip_only, animation_extras(character.skeleton, frames)};
   if (format == OutputFormat::glb) return write_glb(character, outcome.humanoid, reduced, options);
   const auto text = write_gltf(character, outcome.humanoid, reduced, options);
   if (!text) return text.error();

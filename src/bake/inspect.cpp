@@ -14,8 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMaxCheckedRate = 60.0;  // frames per second of a clip that are checked at most
-
 std::vector<ClipInspection> clips_of(const Character& character) {
   std::vector<ClipInspection> clips;
   for (std::size_t i = 0; i < character.animations.size(); ++i) {
@@ -27,68 +25,32 @@ std::vector<ClipInspection> clips_of(const Character& character) {
   return clips;
 }
 
-/// Anatomical rotations of the segments in every pose.
-std::vector<PerSegment<Quat>> rotations_of(const Skeleton& skeleton, const Humanoid& humanoid,
-                                           const std::vector<Pose>& poses, Rolls rolls) {
-  std::vector<PerSegment<Quat>> result(poses.size());
-  PerSegment<Quat> node_from_segment;  // beside Humanoid::node_from_segment
-  for (std::size_t f = 0; f < poses.size(); ++f) {
-    const bool canonical = rolls == Rolls::canonical || f == 0;
-    const BodyPose segments = canonical ? canonical_segments_of(skeleton, humanoid, poses[f])
-                                        : segments_of(skeleton, humanoid, poses[f]);
-    for (int i = 0; i < kSegmentCount; ++i)
-      result[f][i] = canonical ? segments[i].rotation : segments[i].rotation * node_from_segment[i];
-    if (f > 0 || rolls == Rolls::canonical) continue;
-    const BodyPose nodes = segments_of(skeleton, humanoid, poses[0]);
-    for (int i = 0; i < kSegmentCount; ++i)
-      node_from_segment[i] = nodes[i].rotation.conjugate() * segments[i].rotation;
-  }
-  return result;
-}
-
-RomFigures figures_of(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,
-                      const std::vector<Pose>& poses, Rolls rolls) {
-  RomFigures figures;
-  figures.rolls = rolls;
-  long samples = 0, over_1 = 0, over_5 = 0;
-  for (const PerSegment<Quat>& rotations : rotations_of(skeleton, humanoid, poses, rolls)) {
-    const PerJoint<SwingTwist> charts = charts_of(range, rotations);
-    for (int j = 0; j < kJointCount; ++j) {
-      if (humanoid.segments[index(child_of(joint_at(j)))].fused()) continue;
-      const double outside_deg = degrees(excess(range.joints[j], charts[j]));
-      ++samples;
-      over_1 += outside_deg > 1.0;
-      over_5 += outside_deg > 5.0;
-      if (outside_deg <= figures.excess_max_deg) continue;
-      figures.excess_max_deg = outside_deg;
-      figures.worst_joint = joint_at(j);
-    }
-  }
-  if (samples == 0) return figures;
-  figures.over_1deg_fraction = static_cast<double>(over_1) / static_cast<double>(samples);
-  figures.over_5deg_fraction = static_cast<double>(over_5) / static_cast<double>(samples);
-  return figures;
-}
-
 void check_poses(Inspection& inspection, const RangeOfMotion& range) {
   const Character& character = *inspection.character;
   const Skeleton& skeleton = character.skeleton;
-  inspection.rest = rom_figures(skeleton, *inspection.humanoid, range, {rest_pose(skeleton)});
+  const Humanoid& humanoid = *inspection.humanoid;
+  inspection.rest = rom_figures(rom_paths(skeleton, humanoid, range, {rest_pose(skeleton)}));
   for (std::size_t i = 0; i < character.animations.size(); ++i) {
-    ClipInspection& clip = inspection.clips[i];
-    const double rate = std::clamp(clip.fps, 1.0, kMaxCheckedRate);
-    const Clip sampled = sample_clip(skeleton, character.animations[i], rate);
-    clip.rom = rom_figures(skeleton, *inspection.humanoid, range, sampled.frames);
+    const auto stored = frames_in_extras(skeleton, character.animations[i].extras_json);
+    const Clip clip = clip_to_check(character, i);
+    inspection.clips[i].rom = rom_figures(rom_paths(skeleton, humanoid, range, clip.frames, stored));
   }
 }
 
 Json rom_json(const std::optional<RomFigures>& rom) {
   if (!rom) return nullptr;
+  Json joints = Json::object();
+  for (int j = 0; j < kJointCount; ++j)
+    if (const auto& figures = rom->joints[j])
+      joints[std::string(name(joint_at(j)))] = {{"over_1deg_fraction", figures->over_1deg_fraction},
+                                                {"over_5deg_fraction", figures->over_5deg_fraction},
+                                                {"excess_max_deg", figures->excess_max_deg}};
   return {{"over_1deg_fraction", rom->over_1deg_fraction},
           {"over_5deg_fraction", rom->over_5deg_fraction},
           {"excess_max_deg", rom->excess_max_deg},
           {"worst_joint", rom->worst_joint ? Json(name(*rom->worst_joint)) : Json(nullptr)},
-          {"rolls", name(rom->rolls)}};
+          {"rolls", name(rom->rolls)},
+          {"joints", std::move(joints)}};
 }
 
 void add_humanoid(Json& json, const Inspection& inspection) {
@@ -151,8 +113,6 @@ std::string_view name(Verdict verdict) {
   return "malformed";
 }
 
-std::string_view name(Rolls rolls) { return rolls == Rolls::canonical ? "canonical" : "first-frame"; }
-
 int exit_status(Verdict verdict) { return static_cast<int>(verdict); }
 
 double native_rate(const Animation& animation) {
@@ -167,13 +127,6 @@ double native_rate(const Animation& animation) {
   const double rate = 1.0 / spacing;
   const double whole = std::round(rate);
   return std::abs(rate - whole) < 1e-3 * rate ? whole : rate;
-}
-
-RomFigures rom_figures(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,
-                       const std::vector<Pose>& poses) {
-  const RomFigures canonical = figures_of(skeleton, humanoid, range, poses, Rolls::canonical);
-  const RomFigures fixed = figures_of(skeleton, humanoid, range, poses, Rolls::first_frame);
-  return fixed.over_1deg_fraction < canonical.over_1deg_fraction ? fixed : canonical;
 }
 
 Result<Inspection> inspect(const std::string& file, const InspectSettings& settings,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/rom_figures.h"
 #include "base/character.h"
 #include "base/result.h"
 #include "humanoid/humanoid.h"
@@ -16,24 +17,6 @@ enum class Verdict { humanoid, not_humanoid, malformed };
 std::string_view name(Verdict verdict);  // "humanoid", "not-humanoid", "malformed"
 /// 0 humanoid, 1 not a humanoid, 2 malformed.
 int exit_status(Verdict verdict);
-
-/// Bones do not tell how the segments inside them are rolled about their length; a choice of rolls for a
-/// whole clip is one reading of it.
-enum class Rolls {
-  canonical,    // in every frame like a human body (canonical_segments_of)
-  first_frame,  // like a human body in the first frame, from then on fixed to the nodes, as a bake leaves
-                // them
-};
-std::string_view name(Rolls rolls);  // "canonical", "first-frame"
-
-/// How far poses lie outside the range of motion, over all joints that move, in the reading that fits better.
-struct RomFigures {
-  double over_1deg_fraction = 0.0;
-  double over_5deg_fraction = 0.0;
-  double excess_max_deg = 0.0;
-  std::optional<Joint> worst_joint;
-  Rolls rolls = Rolls::canonical;
-};
 
 struct ClipInspection {
   std::string name;
@@ -61,9 +44,6 @@ struct InspectSettings {
 /// Frames per second of an animation: the file's, or that of its closest keys (a reduced clip leaves keys
 /// out).
 double native_rate(const Animation& animation);
-
-RomFigures rom_figures(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,
-                       const std::vector<Pose>& poses);
 
 /// `file` may be "mannequin". A file that cannot be loaded is malformed, not an error. Errors: the region's.
 Result<Inspection> inspect(const std::string& file, const InspectSettings& settings,

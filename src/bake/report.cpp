@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "bake/frames.h"
 #include "bake/impact.h"
 
 namespace ukemi {
@@ -47,20 +48,14 @@ Json settings_json(const BakeSettings& settings, const BakeOutcome& outcome) {
 }
 
 Json frames_json(const Character& character, const BakeOutcome& outcome) {
-  const auto file_from_node = world_transforms(character.skeleton, outcome.start.pose);
+  const SegmentFrames frames =
+      segment_frames(character.skeleton, outcome.humanoid, outcome.start.pose, outcome.start.segments);
   Json json = Json::object();
   for (int i = 0; i < kSegmentCount; ++i) {
-    const std::string segment(name(segment_at(i)));
-    const int node = outcome.humanoid.segments[i].node();
-    if (node < 0) {
-      json[segment] = nullptr;
-      continue;
-    }
-    const Quat world_from_node =
-        outcome.humanoid.world_from_file.rotation * rotation_part(file_from_node[node].linear());
-    const Quat segment_from_node = outcome.start.segments[i].rotation.conjugate() * world_from_node;
-    json[segment] = {{"node", character.skeleton.label(node)},
-                     {"segment_from_node", numbers(segment_from_node)}};
+    Json& segment = json[std::string(name(segment_at(i)))];
+    if (frames.node[i] < 0) continue;
+    segment = {{"node", character.skeleton.label(frames.node[i])},
+               {"segment_from_node", numbers(frames.segment_from_node[i])}};
   }
   return json;
 }

@@ -112,6 +112,13 @@ void declare_method(Options& options, BakeSettings& settings) {
       },
       "active restriction: joints resist fast rotation, like a person who tenses up");
   options.number("--active-k", "1_S", simulation.active_k, Range{0.0, 2000.0, true}, "its strength k");
+  options.custom(
+      "--active-file", "FILE",
+      [&simulation](const std::string& text) -> Status {
+        simulation.active_file = text;
+        return Done{};
+      },
+      "its thresholds, as calibrate writes them [default: the program's own]");
   options.number("--active-delay", "S", simulation.active_delay_s, Range{0.0, 10.0},
                  "time before it sets in");
   options.number(

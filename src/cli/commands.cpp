@@ -19,13 +19,17 @@ struct Command {
   int (*run)(const Arguments&);
 };
 
-constexpr std::array<Command, 5> kCommands = {{
+constexpr std::array<Command, 7> kCommands = {{
     {"bake", "CHARACTER", "one hit reaction of a character: clip, contact sheet, report", bake_command},
     {"inspect", "FILE", "what is in a file: skeleton, humanoid map, units, clips, range of motion",
      inspect_command},
     {"render", "FILE", "contact sheet of any clip in a file", render_command},
     {"compare", "CHARACTER", "the same random hits with every method of joint restriction", compare_command},
     {"diff", "A B", "compares two clips joint by joint", diff_command},
+    {"rom", "", "range of motion of the joints, and a clip's path through it, as picture or text",
+     rom_command},
+    {"calibrate", "FILE...", "thresholds of the active restriction from people who stand and walk",
+     calibrate_command},
 }};
 
 std::string overview() {

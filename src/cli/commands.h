@@ -13,6 +13,8 @@ int inspect_command(const Arguments& arguments);
 int render_command(const Arguments& arguments);
 int compare_command(const Arguments& arguments);
 int diff_command(const Arguments& arguments);
+int rom_command(const Arguments& arguments);
+int calibrate_command(const Arguments& arguments);
 
 /// The whole command line without the program's name.
 int run(const Arguments& arguments);

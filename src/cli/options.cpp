@@ -170,6 +170,18 @@ void Options::argument(const std::string& name, std::string& target, const std::
   parser_->app.add_option(name, std::move(take), help)->type_name("")->type_size(1)->expected(1)->required();
 }
 
+void Options::arguments(const std::string& name, std::vector<std::string>& target, const std::string& help) {
+  parser_->arguments.push_back(name);
+  CLI::Option* option =
+      parser_->app.add_option(name, CLI::callback_t([&target](const CLI::results_t& values) {
+                                target = values;
+                                return true;
+                              }),
+                              help);
+  option->type_name("")->type_size(1)->expected(-1)->allow_extra_args();
+  option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void Options::custom(const std::string& names, const std::string& value,
                      std::function<Status(const std::string&)> take, const std::string& help, bool list) {
   parser_->declare(names, value, with_notes(help, {list ? "may be repeated" : ""}), list, std::move(take));

@@ -43,6 +43,8 @@ class Options {
   /// Heading of the options declared next.
   void group(const std::string& title);
   void argument(const std::string& name, std::string& target, const std::string& help);
+  /// Any number of them, none included.
+  void arguments(const std::string& name, std::vector<std::string>& target, const std::string& help);
   void text(const std::string& names, const std::string& value, std::string& target, const std::string& help);
   void text(const std::string& names, const std::string& value, std::optional<std::string>& target,
             const std::string& help);

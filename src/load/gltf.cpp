@@ -206,6 +206,7 @@ class GltfReader {
         animation.start_s = i == 0 ? track.times.front() : std::min(animation.start_s, track.times.front());
         animation.end_s = i == 0 ? track.times.back() : std::max(animation.end_s, track.times.back());
       }
+      if (const auto extras = json.find("extras")) animation.extras_json = extras->dump();
       character_.animations.push_back(std::move(animation));
     }
   }

@@ -151,6 +151,10 @@ std::string JsonView::text() const {
   return json(value_).get<std::string>();
 }
 
+std::string JsonView::dump() const {
+  return json(value_).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 std::string JsonView::text(const char* key, std::string otherwise) const {
   const auto member = find(key);
   return member ? member->text() : otherwise;

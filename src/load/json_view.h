@@ -50,6 +50,7 @@ class JsonView {
   double number(const char* key, double otherwise) const;
   bool boolean(const char* key, bool otherwise) const;
   std::string text() const;
+  std::string dump() const;  // as JSON
   std::string text(const char* key, std::string otherwise) const;
   /// The numbers of the array `key`, exactly `count` of them, or `otherwise` when missing.
   std::vector<double> numbers(const char* key, std::vector<double> otherwise) const;

@@ -114,6 +114,13 @@ double polygon_distance(const std::vector<Vec2>& polygon, const Vec2& point) {
   return contains(polygon, point) ? -distance : distance;
 }
 
+double polygon_area(const std::vector<Vec2>& polygon) {
+  double twice = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+  return 0.5 * twice;
+}
+
 double excess(const JointRange& range, const SwingTwist& chart) {
   const double twist = std::max(range.twist_min - chart.twist, chart.twist - range.twist_max);
   return std::max({0.0, twist, polygon_distance(range.polygon, chart.swing)});

@@ -2,6 +2,7 @@
 // alpha (Era et al., section 2.2 and 4.1; the chart is the swing rotation vector, see swing_twist).
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -39,6 +40,11 @@ struct JointFrame {
   Quat relative_from_joint(const Quat& joint) const;
 };
 
+/// What an angle means: "flexion" above 0, "extension" below. Empty where nobody said.
+struct AxisMeaning {
+  std::string positive, negative;
+};
+
 /// Contract:
 /// 1. polygon: at least 3 corners (a_y, a_z), radians, counter-clockwise, star-shaped about the origin, the
 /// origin inside.
@@ -49,6 +55,7 @@ struct JointRange {
   std::vector<Vec2> polygon;
   double twist_min = 0.0;
   double twist_max = 0.0;
+  std::array<AxisMeaning, 3> meanings{};  // of a_y, a_z, alpha
 };
 
 struct RangeOfMotion {
@@ -58,6 +65,8 @@ struct RangeOfMotion {
 
 /// Signed distance to the polygon's boundary, radians: positive outside. Exact for concave polygons too.
 double polygon_distance(const std::vector<Vec2>& polygon, const Vec2& point);
+/// Enclosed area, square radians of the chart.
+double polygon_area(const std::vector<Vec2>& polygon);
 /// Boundary point nearest to `point`.
 Vec2 nearest_boundary_point(const std::vector<Vec2>& polygon, const Vec2& point);
 

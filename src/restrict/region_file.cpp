@@ -67,6 +67,7 @@ class RegionReader {
     if (Status s = read_frame(table, label, given_[index(*joint)], range.frame); !s) return s;
     if (Status s = read_polygon(table, label, range); !s) return s;
     if (Status s = read_twist(table, label, range); !s) return s;
+    if (Status s = read_meanings(table, label, range); !s) return s;
     given_[index(*joint)] = true;
     return Done{};
   }
@@ -170,6 +171,21 @@ class RegionReader {
     return Done{};
   }
 
+  Status read_meanings(const toml::table& table, const std::string& label, JointRange& range) const {
+    constexpr std::array keys = {"meaning_a_y", "meaning_a_z", "meaning_alpha"};
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const toml::node* node = table.get(keys[i]);
+      if (node == nullptr) continue;
+      const std::string text = node->value_or<std::string>("");
+      const auto slash = text.find("/-");
+      if (!text.starts_with('+') || slash == std::string::npos)
+        return fail(*node, label, fmt::format("{} is not \"+WORDS/-WORDS\"", keys[i]),
+                    "say what an angle above 0 and one below 0 mean, as in \"+flexion/-extension\"");
+      range.meanings[i] = {text.substr(1, slash - 1), text.substr(slash + 2)};
+    }
+    return Done{};
+  }
+
   Result<RangeOfMotion> mirror_missing(const toml::table& table) {
     for (int j = 0; j < kJointCount; ++j) {
       if (given_[j]) continue;
@@ -210,6 +226,10 @@ JointRange mirrored(const JointRange& range) {
     result.polygon.emplace_back(-corner->x(), corner->y());
   result.twist_min = -range.twist_max;
   result.twist_max = -range.twist_min;
+  const auto swapped = [](const AxisMeaning& meaning) {
+    return AxisMeaning{meaning.negative, meaning.positive};
+  };
+  result.meanings = {swapped(range.meanings[0]), range.meanings[1], swapped(range.meanings[2])};
   return result;
 }
 

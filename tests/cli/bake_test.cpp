@@ -193,7 +193,12 @@ TEST_F(Bake, IsReadBackByTheOtherCommands) {
   EXPECT_EQ(inspection["verdict"], "humanoid");
   EXPECT_EQ(inspection["clips"].back()["name"], "head_left");
   EXPECT_EQ(inspection["clips"].back()["fps"], 60.0);
-  EXPECT_EQ(inspection["clips"].back()["rom"]["over_1deg_fraction"], 0.0) << inspection["clips"].back();
+  const Json& rom = inspection["clips"].back()["rom"];
+  EXPECT_EQ(rom["over_1deg_fraction"], 0.0) << rom;
+  EXPECT_LT(rom["excess_max_deg"], 0.5) << rom;
+  EXPECT_EQ(rom["rolls"], "stored");
+  EXPECT_EQ(rom["joints"].size(), 17u);
+  EXPECT_EQ(rom["joints"]["knee_l"]["over_1deg_fraction"], 0.0) << rom;
   succeed({"render", "a.glb", "-o", "a.png"});
   EXPECT_EQ(read("a.png").substr(1, 3), "PNG");
   succeed({"render", "a.bvh", "--shapes", "-o", "b.png"});

@@ -1,0 +1,36 @@
+// Which way the anatomical segments sit in their nodes: written beside a baked clip, read back from it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/math.h"
+#include "base/segments.h"
+#include "base/skeleton.h"
+#include "humanoid/humanoid.h"
+
+namespace ukemi {
+
+/// R_world_segment(t) = R_world_node(t) * conjugate(segment_from_node), for a whole clip.
+struct SegmentFrames {
+  PerSegment<int> node{};  // -1: the segment is fused
+  PerSegment<Quat> segment_from_node{};
+};
+
+/// The frames that `segments` have in the nodes of `pose`.
+SegmentFrames segment_frames(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose,
+                             const BodyPose& segments);
+
+/// The segments' rotations in a pose, up to a rotation common to all of them. A fused one has that of its
+/// parent.
+PerSegment<Quat> rotations_of(const Skeleton& skeleton, const SegmentFrames& frames, const Pose& pose);
+
+/// The extras of a baked animation: {"ukemi": {"format": 1, "generator": ..., "segments": {SEGMENT: {"node",
+/// "segment_from_node": [x, y, z, w]}}}}; null for a fused segment.
+std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames);
+
+/// The frames in an animation's extras; nothing where there are none or they do not fit the skeleton.
+std::optional<SegmentFrames> frames_in_extras(const Skeleton& skeleton, std::string_view extras_json);
+
+}  // namespace ukemi

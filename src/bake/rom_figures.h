@@ -1,0 +1,63 @@
+// How far poses lie outside the range of motion, joint by joint.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "bake/frames.h"
+#include "base/character.h"
+#include "base/segments.h"
+#include "humanoid/humanoid.h"
+#include "restrict/range_of_motion.h"
+
+namespace ukemi {
+
+/// Bones do not tell how the segments inside them are rolled about their length; a choice of rolls for a
+/// whole clip is one reading of it.
+enum class Rolls {
+  stored,       // as the bake that made the clip wrote them into it
+  canonical,    // in every frame like a human body (canonical_segments_of)
+  first_frame,  // like a human body in the first frame, from then on fixed to the nodes
+};
+std::string_view name(Rolls rolls);  // "stored", "canonical", "first-frame"
+
+/// One joint over a clip; empty for a joint above a fused segment.
+struct JointPath {
+  std::vector<SwingTwist> charts;
+  std::vector<double> excess_deg;  // of each chart
+};
+
+struct RomPaths {
+  Rolls rolls = Rolls::canonical;
+  PerJoint<JointPath> joints;
+};
+
+struct JointRomFigures {
+  double over_1deg_fraction = 0.0;  // of the frames
+  double over_5deg_fraction = 0.0;
+  double excess_max_deg = 0.0;
+};
+
+/// Over all joints that move.
+struct RomFigures {
+  double over_1deg_fraction = 0.0;  // of the joint samples
+  double over_5deg_fraction = 0.0;
+  double excess_max_deg = 0.0;
+  std::optional<Joint> worst_joint;
+  Rolls rolls = Rolls::canonical;
+  PerJoint<std::optional<JointRomFigures>> joints;  // nothing where the segment is fused
+};
+
+/// The joints' paths through `poses`: with the stored frames where there are any, else with the rolls that
+/// leave fewer samples outside.
+RomPaths rom_paths(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,
+                   const std::vector<Pose>& poses, const std::optional<SegmentFrames>& stored = {});
+
+JointRomFigures rom_figures(const JointPath& path);
+RomFigures rom_figures(const RomPaths& paths);
+
+/// A clip's poses as they are checked, at most 60 a second.
+Clip clip_to_check(const Character& character, std::size_t clip);
+
+}  // namespace ukemi
