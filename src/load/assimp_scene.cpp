@@ -110,7 +110,7 @@ struct Vertices {
   std::vector<float> weights;
   std::vector<std::uint32_t> indices;
 
-  /// Makes vertices that are equal in everything one; order of first use.
+  /// Makes vertices that are equal in everything one; order of first use. Triangles without area go.
   void merge_equal() {
     const std::size_t count = positions.size() / 3;
     std::vector<meshopt_Stream> streams;
@@ -131,6 +131,17 @@ struct Vertices {
     };
     apply(positions), apply(normals), apply(uvs), apply(joints), apply(weights);
     for (std::uint32_t& index : indices) index = remap[index];
+    drop_degenerate_triangles();
+  }
+
+ private:
+  /// Triangles of which two corners have become one; a mesh of nothing else is left as it is.
+  void drop_degenerate_triangles() {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
+      if (indices[i] != indices[i + 1] && indices[i + 1] != indices[i + 2] && indices[i + 2] != indices[i])
+        kept.insert(kept.end(), &indices[i], &indices[i] + 3);
+    if (!kept.empty()) indices = std::move(kept);
   }
 };
 

@@ -131,7 +131,7 @@ TEST_F(Bake, PushesTheBodyAwayFromWhereTheBlowComes) {
 TEST_F(Bake, LengthAndRateAreThoseAskedFor) {
   const Json all = report_of({"--duration", "1.5", "--fps", "24", "--no-until-rest"});
   EXPECT_EQ(all["clip"]["frames"], 37);
-  const Json trimmed = report_of({"--hold", "0.1"});
+  const Json trimmed = report_of({"--hold", "0.1", "--duration", "8"});
   ASSERT_FALSE(trimmed["simulation"]["rest_time_s"].is_null());
   const double rest_s = trimmed["simulation"]["rest_time_s"];
   EXPECT_NEAR(trimmed["clip"]["duration_s"].get<double>(), rest_s + 0.1, 1.0 / 60.0);
