@@ -97,6 +97,16 @@ Vec3 speed_between(const Quat& before, const Quat& after, double fps) {
   return {local.y(), local.z(), local.x()};
 }
 
+/// Rigs let the hand turn about the forearm; in a person the forearm takes that turn and the wrist has none.
+void give_twist_to_forearms(const SegmentFrames& frames, PerSegment<Quat>& rotations) {
+  for (const Segment hand : {Segment::hand_l, Segment::hand_r}) {
+    if (frames.node[index(hand)] < 0) continue;
+    Quat& forearm = rotations[index(parent_of(hand))];
+    const double twist = twist_angle(forearm.conjugate() * rotations[index(hand)], Vec3::UnitY());
+    forearm = forearm * exp_rotation(twist * Vec3::UnitY());
+  }
+}
+
 Quat rotation_of(const RangeOfMotion& range, Joint joint, const PerSegment<Quat>& segments) {
   const Quat relative = segments[index(parent_of(joint))].conjugate() * segments[index(child_of(joint))];
   return range.joints[index(joint)].frame.joint_from_relative(relative);
@@ -143,7 +153,10 @@ JointSpeeds joint_speeds(const Skeleton& skeleton, const Humanoid& humanoid, con
   const SegmentFrames fixed = segment_frames(skeleton, humanoid, clip.frames.front(),
                                              canonical_segments_of(skeleton, humanoid, clip.frames.front()));
   std::vector<PerSegment<Quat>> rotations;
-  for (const Pose& pose : clip.frames) rotations.push_back(rotations_of(skeleton, fixed, pose));
+  for (const Pose& pose : clip.frames) {
+    rotations.push_back(rotations_of(skeleton, fixed, pose));
+    give_twist_to_forearms(fixed, rotations.back());
+  }
   for (int j = 0; j < kJointCount; ++j) {
     const Joint joint = joint_at(j);
     if (fixed.node[index(child_of(joint))] < 0) continue;

@@ -30,7 +30,8 @@ struct JointSpeeds {
   PerJoint<std::vector<bool>> glitch;  // near a jump that no joint makes
 };
 
-/// Of uniformly sampled poses, rolls fixed to the nodes from the first frame on. `cutoff_hz` 0: not filtered.
+/// Of uniformly sampled poses; rolls fixed to the nodes from the first frame on, but the forearm takes the
+/// hand's twist. `cutoff_hz` 0: not filtered.
 JointSpeeds joint_speeds(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,
                          const Clip& clip, double cutoff_hz);
 

@@ -6,20 +6,14 @@
 #include <array>
 #include <cmath>
 
-#include "render/font.h"
+#include "render/page.h"
 #include "render/plot.h"
 
 namespace ukemi {
 namespace {
 
-constexpr Color kPage = hex(0xFBF9F6);
-constexpr Color kCard = hex(0xFFFFFF);
-constexpr Color kCardBorder = hex(0xDDD5C9);
-constexpr Color kInk = hex(0x2E2A26);
-constexpr Color kSoftInk = hex(0x7D746A);
 constexpr Color kGrid = hex(0xEFEAE2);
 constexpr Color kZero = hex(0xCFC6B8);
-constexpr Color kAccent = hex(0xC23B22);
 constexpr Color kRegion = hex(0x4F7F8C);
 constexpr Color kEarly = hex(0xE3A857);
 constexpr Color kLate = hex(0x2B3A67);
@@ -29,18 +23,6 @@ constexpr int kMargin = 36;
 constexpr int kGap = 14;
 constexpr double kCorner = 8.0;
 constexpr double kOutside_deg = 0.1;  // what a file's reduced keys leave is not seen as outside
-
-struct Fonts {
-  Font regular, bold;
-};
-
-Result<Fonts> open_fonts() {
-  auto regular = Font::open(FontStyle::regular);
-  if (!regular) return regular.error();
-  auto bold = Font::open(FontStyle::bold);
-  if (!bold) return bold.error();
-  return Fonts{std::move(*regular), std::move(*bold)};
-}
 
 enum class Align { left, centre, right };
 
@@ -57,7 +39,7 @@ void write_label(Picture& page, const Font& font, const Vec2& at, Align align, c
   const double width = font.width(text, size);
   const double left = at.x() - (align == Align::left ? 0.0 : align == Align::centre ? 0.5 * width : width);
   const auto pixel = [](double v) { return static_cast<int>(std::lround(v)); };
-  fill(page, {pixel(left - 4), pixel(at.y() - size), pixel(width + 8), pixel(1.3 * size)}, 4.0, kCard, 0.85);
+  fill(page, {pixel(left - 4), pixel(at.y() - size), pixel(width + 8), pixel(1.3 * size)}, 4.0, kPaper, 0.85);
   write(page, font, {left, at.y()}, Align::left, text, size, color);
 }
 
@@ -67,8 +49,8 @@ std::string number(double value) {
 }
 
 void draw_card(Picture& page, const Box& box) {
-  fill(page, box, kCorner, kCard);
-  outline(page, box, kCorner, kCardBorder);
+  fill(page, box, kCorner, kPaper);
+  outline(page, box, kCorner, kCellBorder);
 }
 
 int header_height(const RomFigure& figure) { return 84 + 22 * static_cast<int>(figure.notes.size()); }
@@ -128,7 +110,7 @@ void draw_grid(Picture& page, const Fonts& fonts, const PlotScale& scale, bool n
     draw_line(page, at, scale({scale.high().x(), value}), 1.0, value == 0.0 ? kZero : kGrid);
     if (numbers) write(page, fonts.regular, at + Vec2(-8, 4), Align::right, number(value), 12, kSoftInk);
   }
-  if (numbers) outline(page, {box.x - 1, box.y - 1, box.width + 2, box.height + 2}, 0.0, kCardBorder);
+  if (numbers) outline(page, {box.x - 1, box.y - 1, box.width + 2, box.height + 2}, 0.0, kCellBorder);
 }
 
 void draw_polygon(Picture& page, const PlotScale& scale, const JointRange& range, double width) {
@@ -157,9 +139,9 @@ void draw_path(Picture& page, const PlotScale& scale, const RomPath& path, doubl
       fill_disc(page, at(i), 0.9 * width, kAccent);
     }
   if (frames == 0) return;
-  fill_disc(page, at(0), 2.6 * width, kCard);
+  fill_disc(page, at(0), 2.6 * width, kPaper);
   fill_disc(page, at(0), 2.0 * width, time_color(0, frames));
-  fill_disc(page, at(frames - 1), 2.6 * width, kCard);
+  fill_disc(page, at(frames - 1), 2.6 * width, kPaper);
   fill_disc(page, at(frames - 1), 2.0 * width, time_color(frames - 1, frames));
 }
 
@@ -188,13 +170,13 @@ void draw_chords(Picture& page, const Fonts& fonts, const PlotScale& scale, cons
     const Vec2 foot =
         horizontal ? Vec2(place(end.at).x(), box.y + box.height) : Vec2(box.x, place(end.at).y());
     draw_dashed_line(page, place(end.at), foot, 1.0, 4.0, color);
-    fill_disc(page, place(end.at), 5.5, kCard);
+    fill_disc(page, place(end.at), 5.5, kPaper);
     fill_disc(page, place(end.at), 4.0, color);
     write_label(page, fonts.bold, place(end.at) + end.shift, end.align,
                 fmt::format("{} {}°", end.name, number(std::round(10.0 * degrees(end.value)) / 10.0)), 15,
                 color);
   }
-  fill_disc(page, place(a), 8.5, kCard);
+  fill_disc(page, place(a), 8.5, kPaper);
   fill_disc(page, place(a), 6.5, kInk);
   write_label(page, fonts.bold, place(a) + Vec2(-14, -12), Align::right,
               fmt::format("({}°, {}°)", number(std::round(10.0 * degrees(a.x())) / 10.0),
@@ -266,7 +248,7 @@ void draw_twist(Picture& page, const Fonts& fonts, const Box& card, const RomPan
       draw_line(page, at(i - 1), at(i), 2.2, outside ? kAccent : time_color(i, frames));
     }
   }
-  outline(page, {box.x - 1, box.y - 1, box.width + 2, box.height + 2}, 0.0, kCardBorder);
+  outline(page, {box.x - 1, box.y - 1, box.width + 2, box.height + 2}, 0.0, kCellBorder);
   write(page, fonts.regular, {card.x + 18.0, card.y + 34.0}, Align::left, "α  ↑ " + meaning(range, 2, true),
         14, kInk);
   write(page, fonts.regular, {double(box.x), card.y + card.height - 42.0}, Align::left,
