@@ -16,32 +16,70 @@ namespace {
 
 constexpr double kCutoff_hz = 12.0;
 constexpr double kShare = 0.99;
-constexpr long kLeastFrames = 100;  // for a percentile that counts
-constexpr double kStep = 5.0;       // thresholds are multiples of it, degrees per second
+constexpr double kLeast_s = 2.0;  // for a percentile that counts
+constexpr double kStep = 5.0;     // thresholds are multiples of it, degrees per second
 constexpr double kLowestRate = 24.0, kHighestRate = 120.0;
 
 /// Absolute speeds of each axis, degrees per second.
-using Pool = std::array<std::vector<double>, 3>;
+using Pool = std::array<std::vector<TimedValue>, 3>;
 
-struct Pools {
-  PerJoint<Pool> standing, walking;
-};
+using Pools = PerJoint<Pool>;
+
+double duration_of(const Pool& pool) {
+  double seconds = 0.0;
+  for (const TimedValue& value : pool[0]) seconds += value.seconds;
+  return seconds;
+}
+
+Vec3 percentiles(const Pool& pool) {
+  if (duration_of(pool) < kLeast_s) return Vec3::Zero();
+  return {percentile(pool[0], kShare), percentile(pool[1], kShare), percentile(pool[2], kShare)};
+}
 
 /// The joint that stands for both sides.
 Joint pooled(Joint joint) { return is_left(joint) ? mirror_of(joint) : joint; }
 
-void add_clip(const JointSpeeds& clip, Pools& pools) {
+void pool_frames(const JointSpeeds& clip, Activity activity, Pools& pools) {
   for (int j = 0; j < kJointCount; ++j) {
-    const int to = index(pooled(joint_at(j)));
+    Pool& pool = pools[index(pooled(joint_at(j)))];
     for (std::size_t f = 0; f < clip.speeds[j].size(); ++f) {
-      if (clip.glitch[j][f] || clip.activity[f] == Activity::other) continue;
-      Pool& pool = clip.activity[f] == Activity::standing ? pools.standing[to] : pools.walking[to];
-      for (int axis = 0; axis < 3; ++axis) pool[axis].push_back(degrees(std::abs(clip.speeds[j][f][axis])));
+      if (clip.glitch[j][f] || clip.activity[f] != activity) continue;
+      for (int axis = 0; axis < 3; ++axis)
+        pool[axis].push_back({degrees(std::abs(clip.speeds[j][f][axis])), 1.0 / clip.fps});
     }
   }
 }
 
-Status add_file(const std::string& file, const RangeOfMotion& range, Pools& pools, Diagnostics& diagnostics) {
+/// Frames of calm standing of all clips, and what walking asks for.
+class Measurement {
+ public:
+  Status add_file(const std::string& file, bool with_walking, const RangeOfMotion& range,
+                  Diagnostics& diagnostics);
+  void report(Calibration& calibration) const;
+
+ private:
+  void add_walk(const JointSpeeds& clip);
+
+  Pools standing_;
+  PerJoint<double> walking_s_{};
+  PerJoint<Vec3> walking_p99_ = [] {
+    PerJoint<Vec3> zero;
+    zero.fill(Vec3::Zero());
+    return zero;
+  }();
+};
+
+void Measurement::add_walk(const JointSpeeds& clip) {
+  Pools walking;
+  pool_frames(clip, Activity::walking, walking);
+  for (int j = 0; j < kJointCount; ++j) {
+    walking_s_[j] += duration_of(walking[j]);
+    walking_p99_[j] = walking_p99_[j].cwiseMax(percentiles(walking[j]));
+  }
+}
+
+Status Measurement::add_file(const std::string& file, bool with_walking, const RangeOfMotion& range,
+                             Diagnostics& diagnostics) {
   const auto path = character_path(file);
   if (!path) return path.error();
   const auto character = load_character(*path, LoadOptions{}, diagnostics);
@@ -51,14 +89,21 @@ Status add_file(const std::string& file, const RangeOfMotion& range, Pools& pool
   for (const Animation& animation : character->animations) {
     const double rate = std::clamp(native_rate(animation), kLowestRate, kHighestRate);
     const Clip clip = sample_clip(character->skeleton, animation, rate);
-    add_clip(joint_speeds(character->skeleton, *humanoid, range, clip, kCutoff_hz), pools);
+    const JointSpeeds speeds = joint_speeds(character->skeleton, *humanoid, range, clip, kCutoff_hz);
+    pool_frames(speeds, Activity::standing, standing_);
+    if (with_walking) add_walk(speeds);
   }
   return Done{};
 }
 
-Vec3 percentiles(const Pool& pool) {
-  if (static_cast<long>(pool[0].size()) < kLeastFrames) return Vec3::Zero();
-  return {percentile(pool[0], kShare), percentile(pool[1], kShare), percentile(pool[2], kShare)};
+void Measurement::report(Calibration& calibration) const {
+  for (int j = 0; j < kJointCount; ++j) {
+    const int from = index(pooled(joint_at(j)));
+    calibration.standing_s[j] = duration_of(standing_[from]);
+    calibration.walking_s[j] = walking_s_[from];
+    calibration.standing_p99[j] = percentiles(standing_[from]);
+    calibration.walking_p99[j] = walking_p99_[from];
+  }
 }
 
 double threshold(const CalibrationSettings& settings, double standing, double walking) {
@@ -98,21 +143,23 @@ Result<Calibration> calibrate(const CalibrationSettings& settings, Diagnostics& 
   files.insert(files.end(), settings.files.begin(), settings.files.end());
   Calibration calibration;
   calibration.settings = settings;
-  Pools pools;
-  for (const std::string& file : files) {
-    if (const Status status = add_file(file, *range, pools, diagnostics); !status) return status.error();
-    calibration.sources.push_back(std::filesystem::path(file).filename().string());
-  }
-  for (int j = 0; j < kJointCount; ++j) {
-    const int from = index(pooled(joint_at(j)));
-    calibration.standing_frames[j] = static_cast<long>(pools.standing[from][0].size());
-    calibration.walking_frames[j] = static_cast<long>(pools.walking[from][0].size());
-    calibration.standing_p99[j] = percentiles(pools.standing[from]);
-    calibration.walking_p99[j] = percentiles(pools.walking[from]);
+  Measurement measurement;
+  const auto add_files = [&](const std::vector<std::string>& added, bool with_walking) -> Status {
+    for (const std::string& file : added) {
+      const Status status = measurement.add_file(file, with_walking, *range, diagnostics);
+      if (!status) return status.error();
+      const std::string source = std::filesystem::path(file).filename().string();
+      calibration.sources.push_back(with_walking ? source : source + " (standing)");
+    }
+    return Done{};
+  };
+  if (const Status status = add_files(files, settings.walking); !status) return status.error();
+  if (const Status status = add_files(settings.standing_files, false); !status) return status.error();
+  measurement.report(calibration);
+  for (int j = 0; j < kJointCount; ++j)
     for (int axis = 0; axis < 3; ++axis)
       calibration.thresholds[j][axis] =
           threshold(settings, calibration.standing_p99[j][axis], calibration.walking_p99[j][axis]);
-  }
   return calibration;
 }
 
@@ -122,18 +169,19 @@ std::string calibration_toml(const Calibration& calibration) {
       "# Thresholds of the active restriction, degrees per second: [a_y, a_z, alpha] of each joint (left = "
       "right).\n"
       "# It acts on an axis while the joint turns faster about it (Era et al., section 4.2).\n";
-  text += fmt::format("# {:g} times the 99th percentile of calm standing{}, at least {:g},\n",
-                      settings.factor, settings.walking ? ", at least that of walking" : "", kThresholdFloor);
+  text +=
+      fmt::format("# {:g} times the 99th percentile of calm standing{}, at least {:g},\n", settings.factor,
+                  settings.walking ? ", at least that of every walk" : "", kThresholdFloor);
   text += "# rounded up to 5; zero-phase low-pass at 12 Hz. Measured by ukemi calibrate on:\n";
   text += comment_lines(calibration.sources);
   text += "format = 1\nunits = \"deg/s\"\n\n[threshold]\n";
   for (int j = 0; j < kJointCount; ++j) {
     if (is_left(joint_at(j))) continue;
-    text += fmt::format("# 99 %: standing [{}] of {} frames", numbers(calibration.standing_p99[j], 1),
-                        calibration.standing_frames[j]);
+    text += fmt::format("# 99 %: standing [{}] in {:.0f} s", numbers(calibration.standing_p99[j], 1),
+                        calibration.standing_s[j]);
     if (settings.walking)
-      text += fmt::format(", walking [{}] of {}", numbers(calibration.walking_p99[j], 1),
-                          calibration.walking_frames[j]);
+      text += fmt::format(", walking [{}] in {:.0f} s", numbers(calibration.walking_p99[j], 1),
+                          calibration.walking_s[j]);
     text += fmt::format("\n{} = [{}]\n", side_free(joint_at(j)), numbers(calibration.thresholds[j], 0));
   }
   return text;
@@ -148,9 +196,9 @@ std::string calibration_text(const Calibration& calibration) {
                         numbers(calibration.standing_p99[j], 1), numbers(calibration.walking_p99[j], 1),
                         numbers(calibration.thresholds[j], 0));
   }
-  return text + fmt::format("{} frames of calm standing, {} of walking (both sides of a limb)\n",
-                            calibration.standing_frames[index(Joint::hip_r)],
-                            calibration.walking_frames[index(Joint::hip_r)]);
+  return text + fmt::format("{:.0f} s of calm standing, {:.0f} s of walking (both sides of a limb)\n",
+                            calibration.standing_s[index(Joint::hip_r)],
+                            calibration.walking_s[index(Joint::hip_r)]);
 }
 
 }  // namespace ukemi

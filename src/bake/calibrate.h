@@ -11,24 +11,26 @@
 namespace ukemi {
 
 struct CalibrationSettings {
-  std::vector<std::string> files;  // beside the mannequin's own clips
-  double factor = 3.0;             // over the 99th percentile of standing
-  bool walking = true;             // no threshold below the 99th percentile of walking
+  std::vector<std::string> files;           // beside the mannequin's own clips
+  std::vector<std::string> standing_files;  // of which only calm standing is measured
+  double factor = 3.0;                      // over the 99th percentile of standing
+  bool walking = true;                      // no threshold below the 99th percentile of any walk
 };
 
 /// Speeds of joints in degrees per second, left and right together: index of the right or only joint.
 struct Calibration {
   CalibrationSettings settings;
   std::vector<std::string> sources;  // names of the files whose clips were measured
-  PerJoint<Vec3> standing_p99{}, walking_p99{};
-  PerJoint<long> standing_frames{}, walking_frames{};
+  PerJoint<Vec3> standing_p99{};     // of all clips together
+  PerJoint<Vec3> walking_p99{};      // the highest of the clips, each on its own
+  PerJoint<double> standing_s{}, walking_s{};
   PerJoint<Vec3> thresholds{};
 };
 
 /// Speed at which a joint that hardly moves in the clips is held, degrees per second.
 inline constexpr double kThresholdFloor = 120.0;
 
-/// `range` gives the joints' frames. Errors: those of loading; a file that is no humanoid.
+/// Errors: those of loading; a file that is no humanoid.
 Result<Calibration> calibrate(const CalibrationSettings& settings, Diagnostics& diagnostics);
 
 /// As load_active_thresholds reads it, with what it was measured from.

@@ -131,12 +131,16 @@ std::vector<double> low_pass(const std::vector<double>& values, double rate_hz, 
   return {first, first + static_cast<std::ptrdiff_t>(values.size())};
 }
 
-double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
+double percentile(std::vector<TimedValue> values, double share) {
+  std::sort(values.begin(), values.end(),
+            [](const TimedValue& a, const TimedValue& b) { return a.value < b.value; });
+  double total_s = 0.0, passed_s = 0.0;
+  for (const TimedValue& value : values) total_s += value.seconds;
+  for (const TimedValue& value : values) {
+    passed_s += value.seconds;
+    if (passed_s >= share * total_s * (1.0 - 1e-12)) return value.value;
+  }
+  return 0.0;
 }
 
 JointSpeeds joint_speeds(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,

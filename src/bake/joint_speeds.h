@@ -14,8 +14,14 @@ namespace ukemi {
 /// Ends are reflected. A cutoff beyond 0.3 of the rate is lowered to that.
 std::vector<double> low_pass(const std::vector<double>& values, double rate_hz, double cutoff_hz);
 
-/// The value that `share` of the values do not exceed (nearest rank); 0 for none.
-double percentile(std::vector<double> values, double share);
+/// A value that held for a time.
+struct TimedValue {
+  double value = 0.0;
+  double seconds = 0.0;
+};
+
+/// The least value that is not exceeded for `share` of the time; 0 for none.
+double percentile(std::vector<TimedValue> values, double share);
 
 /// What a person does in a frame, as far as the speeds of joints depend on it.
 enum class Activity { standing, walking, other };

@@ -21,10 +21,12 @@ int calibrate_command(const Arguments& arguments) {
   CalibrationSettings settings;
   std::filesystem::path output;
   bool exclude_walking = false;
+  std::vector<std::filesystem::path> standing;
   Options options("calibrate",
                   "measures the thresholds of the active restriction: from the frames of the clips in which "
                   "somebody stands calmly or walks, and from the mannequin's own clips");
   options.arguments("FILE", settings.files, "files with motion");
+  options.paths("--standing", standing, "further files, of which only calm standing is measured");
   options.number("--factor", "X", settings.factor, Range{1.0, 100.0},
                  "threshold over the 99th percentile of standing");
   options.flag("--exclude-walking", exclude_walking, "let walking exceed the thresholds");
@@ -34,6 +36,7 @@ int calibrate_command(const Arguments& arguments) {
   if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
   if (const Status status = check_output(output); !status) return print_error(status.error());
   settings.walking = !exclude_walking;
+  for (const auto& file : standing) settings.standing_files.push_back(file.string());
 
   Diagnostics diagnostics;
   const auto calibration = calibrate(settings, diagnostics);

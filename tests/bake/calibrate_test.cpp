@@ -32,11 +32,12 @@ TEST(JointSpeeds, TheFilterHalvesItsCutoffWithoutDelay) {
 }
 
 TEST(JointSpeeds, APercentileIsAValueOfTheSample) {
-  std::vector<double> values;
-  for (int i = 200; i >= 1; --i) values.push_back(i);
+  std::vector<TimedValue> values;
+  for (int i = 200; i >= 1; --i) values.push_back({static_cast<double>(i), 0.01});
   EXPECT_EQ(percentile(values, 0.99), 198.0);
   EXPECT_EQ(percentile(values, 1.0), 200.0);
-  EXPECT_EQ(percentile({7.0}, 0.5), 7.0);
+  EXPECT_EQ(percentile({{7.0, 1.0}}, 0.5), 7.0);
+  EXPECT_EQ(percentile({{1.0, 3.0}, {2.0, 1.0}}, 0.5), 1.0) << "by time, not by count";
   EXPECT_EQ(percentile({}, 0.5), 0.0);
 }
 
