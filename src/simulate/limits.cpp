@@ -96,7 +96,7 @@ void PassiveLimit::prepare(double h, const Reach& reach, bool all) {
     case Limits::edges:
       return prepare_edges(h, reach, all);
     case Limits::segments:
-      return prepare_chords(h);
+      return prepare_chords();
     case Limits::axis:
     case Limits::segments_euler:
       return prepare_euler();
@@ -115,10 +115,10 @@ void PassiveLimit::prepare_edges(double h, const Reach& reach, bool all) {
     if (all || row.distance < reach.margin + reach.steps * h * std::max(0.0, row.row.dot(omega)))
       present_.push_back({frame * row.row, row.distance});
   complete_ = present_.size() == rows_.size();
-  set_rows(h, present_);
+  set_rows(present_);
 }
 
-void PassiveLimit::set_rows(double, const std::vector<LimitRow>& rows) {
+void PassiveLimit::set_rows(const std::vector<LimitRow>& rows) {
   const std::size_t needed = (rows.size() + kRowsPerMotor - 1) / kRowsPerMotor;
   for (std::size_t m = 0; m < std::max(needed, motors_.size()); ++m) {
     const std::size_t first = m * kRowsPerMotor;
@@ -130,7 +130,7 @@ void PassiveLimit::set_rows(double, const std::vector<LimitRow>& rows) {
 }
 
 // Figure 4 with the rows that the chart's own gradient gives: stops on a_y, a_z and alpha.
-void PassiveLimit::prepare_chords(double) {
+void PassiveLimit::prepare_chords() {
   const SwingTwist chart = model_.chart(joint_);
   const ChordStops stops = chord_stops(joint_.range, chart);
   const Quat frame = world_from_joint(model_, joint_);

@@ -27,9 +27,9 @@ class PassiveLimit {
   double missed() const;
 
  private:
-  void set_rows(double h, const std::vector<LimitRow>& rows);
+  void set_rows(const std::vector<LimitRow>& rows);
   void prepare_edges(double h, const Reach& reach, bool all);
-  void prepare_chords(double h);
+  void prepare_chords();
   void prepare_euler();
   dJointID motor(std::size_t i);
 
