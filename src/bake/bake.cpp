@@ -163,7 +163,7 @@ Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings&
                                  Diagnostics& diagnostics) {
   BakeOutcome outcome;
   outcome.reaction = reaction_name(settings);
-  auto range = load_range_of_motion(settings.region);
+  auto range = settings.range ? Result(*settings.range) : load_range_of_motion(settings.region);
   if (!range) return range.error();
   outcome.range = std::move(*range);
   auto humanoid = map_humanoid(character, settings.humanoid, diagnostics);

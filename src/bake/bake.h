@@ -40,7 +40,8 @@ struct BakeSettings {
   std::optional<std::string> clip;  // name of a clip of the file
   std::optional<double> at_s;
   // method
-  std::string region = "human";
+  std::string region = "human";        // name or file, see load_range_of_motion
+  std::optional<RangeOfMotion> range;  // in place of the region's
   SimulationSettings simulation;
   // clip
   bool until_rest = true;  // trim the still tail

@@ -1,4 +1,4 @@
-// Regions as TOML: assets/limits/*.toml and the user's own.
+// Regions as TOML: assets/limits/*.toml, the user's own, and single joints inside another document.
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -7,6 +7,7 @@
 
 #include "base/files.h"
 #include "restrict/range_of_motion.h"
+#include "restrict/region_tables.h"
 
 namespace ukemi {
 namespace {
@@ -25,9 +26,8 @@ class RegionReader {
     if (const auto base = table["base"].value<std::string>()) {
       Result<RangeOfMotion> loaded = load_range_of_motion(*base);
       if (!loaded) return loaded;
-      range_ = std::move(*loaded);
+      start_from(std::move(*loaded));
       range_.name = file_;
-      given_.fill(true);
     }
     if (table["units"].value_or<std::string>("deg") != "deg")
       return fail(table, "", "units must be \"deg\"", "write angles in degrees");
@@ -35,16 +35,37 @@ class RegionReader {
     if (joints == nullptr)
       return fail(table, "", "has no [[joint]] table",
                   "give at least one joint, or use one of the regions human, diamond, box");
-    for (const toml::node& node : *joints) {
-      const toml::table* joint = node.as_table();
-      if (joint == nullptr)
-        return fail(node, "", "[[joint]] is not a table", "write [[joint]] and its keys below it");
-      if (Status status = read_joint(*joint); !status) return status.error();
-    }
+    if (Status status = read_joints(*joints); !status) return status.error();
     return mirror_missing(table);
   }
 
+  /// Single joints of a whole range.
+  Result<RangeOfMotion> change(RangeOfMotion range, const toml::array& joints) {
+    start_from(std::move(range));
+    if (Status status = read_joints(joints); !status) return status.error();
+    std::string names;
+    for (int j = 0; j < kJointCount; ++j)
+      if (read_[j]) names += fmt::format("{}{}", names.empty() ? "" : ", ", name(joint_at(j)));
+    if (!names.empty()) range_.name += " with " + names;
+    return range_;
+  }
+
  private:
+  void start_from(RangeOfMotion range) {
+    range_ = std::move(range);
+    given_.fill(true);
+  }
+
+  Status read_joints(const toml::array& joints) {
+    for (const toml::node& node : joints) {
+      const toml::table* joint = node.as_table();
+      if (joint == nullptr)
+        return fail(node, "", "[[joint]] is not a table", "write [[joint]] and its keys below it");
+      if (Status status = read_joint(*joint); !status) return status;
+    }
+    return Done{};
+  }
+
   Error fail(const toml::node& where, std::string joint, std::string what, std::string fix) const {
     const toml::source_position at = where.source().begin;
     return {ErrorKind::input,
@@ -63,12 +84,14 @@ class RegionReader {
       return fail(table, label, "unknown joint",
                   "name one of spine chest neck clavicle_r shoulder_r elbow_r wrist_r hip_r knee_r ankle_r "
                   "or their _l");
+    if (read_[index(*joint)]) return fail(table, label, "is given twice", "keep one [[joint]] table of it");
     JointRange& range = range_.joints[index(*joint)];
     if (Status s = read_frame(table, label, given_[index(*joint)], range.frame); !s) return s;
     if (Status s = read_polygon(table, label, range); !s) return s;
     if (Status s = read_twist(table, label, range); !s) return s;
     if (Status s = read_meanings(table, label, range); !s) return s;
     given_[index(*joint)] = true;
+    read_[index(*joint)] = true;
     return Done{};
   }
 
@@ -201,7 +224,8 @@ class RegionReader {
 
   std::string file_;
   RangeOfMotion range_;
-  PerJoint<bool> given_{};
+  PerJoint<bool> given_{};  // has a range: of the base, or read
+  PerJoint<bool> read_{};   // has a table
 };
 
 }  // namespace
@@ -246,6 +270,11 @@ Result<RangeOfMotion> parse_range_of_motion(std::string_view text, const std::st
                  std::string(error.description()),
                  "correct the TOML"};
   }
+}
+
+Result<RangeOfMotion> with_joint_tables(RangeOfMotion range, const toml::array& joints,
+                                        const std::string& file) {
+  return RegionReader(file).change(std::move(range), joints);
 }
 
 Result<RangeOfMotion> load_range_of_motion(const std::string& name_or_file) {

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <toml++/toml.h>
+
 #include <random>
 
 #include "restrict/range_of_motion.h"
+#include "restrict/region_tables.h"
 
 namespace ukemi {
 namespace {
@@ -70,6 +73,37 @@ TEST(Region, OverridesSingleJointsOfABase) {
   const auto human = load_range_of_motion("human");
   EXPECT_EQ(range->joints[index(Joint::elbow_l)].polygon.size(), 4u);
   EXPECT_EQ(range->joints[index(Joint::elbow_r)].polygon, human->joints[index(Joint::elbow_r)].polygon);
+}
+
+/// The joints of a recipe's table put into the human range.
+Result<RangeOfMotion> human_with(std::string_view recipe) {
+  const toml::table document = toml::parse(recipe);
+  return with_joint_tables(*load_range_of_motion("human"), *document["body"]["joint"].as_array(), "my.toml");
+}
+
+TEST(Region, ChangesSingleJointsInsideAnotherDocument) {
+  const auto human = load_range_of_motion("human");
+  const auto range = human_with("[[body.joint]]\nname = \"knee_l\"\nalpha = [-1, 2]\n");
+  ASSERT_TRUE(range) << range.error().message();
+  const JointRange& knee = range->joints[index(Joint::knee_l)];
+  EXPECT_NEAR(knee.twist_min, radians(-1.0), 1e-12);
+  EXPECT_NEAR(knee.twist_max, radians(2.0), 1e-12);
+  EXPECT_EQ(knee.polygon, human->joints[index(Joint::knee_l)].polygon);
+  EXPECT_EQ(range->joints[index(Joint::knee_r)].twist_max, human->joints[index(Joint::knee_r)].twist_max);
+  EXPECT_EQ(range->name, "human with knee_l");
+}
+
+TEST(Region, FaultsInsideAnotherDocumentAreNamedWithLineAndJoint) {
+  const auto inverted = human_with("x = 1\n\n[[body.joint]]\nname = \"knee_l\"\nalpha = [9, -9]\n");
+  ASSERT_FALSE(inverted);
+  EXPECT_EQ(inverted.error().file, "my.toml");
+  EXPECT_EQ(inverted.error().line, 5);
+  EXPECT_EQ(inverted.error().joint, "knee_l");
+  const auto twice =
+      human_with("[[body.joint]]\nname = \"knee_l\"\nalpha = [-9, 9]\n[[body.joint]]\nname = \"knee_l\"\n");
+  ASSERT_FALSE(twice);
+  EXPECT_NE(twice.error().what.find("twice"), std::string::npos);
+  EXPECT_EQ(twice.error().line, 4);
 }
 
 struct Fault {
