@@ -10,6 +10,7 @@
 #include "bake/impact.h"
 #include "bake/outputs.h"
 #include "bake/report.h"
+#include "bake/settings.h"
 #include "bake/sheet.h"
 #include "base/files.h"
 #include "body/ground.h"
@@ -155,7 +156,7 @@ std::string reaction_name(const BakeSettings& settings) {
 }
 
 Status check_settings(const std::string& character, const BakeSettings& settings) {
-  if (const Status status = check_scene(settings); !status) return status.error();
+  if (const Status status = check_values(settings); !status) return status.error();
   return check_outputs(character, settings);
 }
 

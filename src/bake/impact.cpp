@@ -4,13 +4,13 @@
 
 #include <toml++/toml.h>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 
 #include "bake/bake.h"
 #include "bake/nearest.h"
 #include "base/files.h"
+#include "base/numbers.h"
 
 namespace ukemi {
 namespace {
@@ -138,14 +138,6 @@ Result<std::vector<ImpactPreset>> read_presets(const toml::table& document, cons
   return presets;
 }
 
-std::optional<double> number(std::string_view text) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [parsed, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || parsed != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 Vec3 horizontal(const Vec3& v) { return {v.x(), 0.0, v.z()}; }
 
 /// Unit, horizontal.
@@ -155,20 +147,6 @@ Vec3 forward_of(const Quat& world_from_pelvis) {
   if (flat.norm() > 0.2) return flat.normalized();
   const Vec3 up = horizontal(world_from_pelvis * Vec3::UnitY());
   return (anterior.y() < 0.0 ? up : Vec3(-up)).normalized();
-}
-
-Status check_range(std::string_view option, const std::optional<double>& value, double min, double max) {
-  if (!value || (*value >= min && *value <= max)) return Done{};
-  return usage(fmt::format("{}: {} is out of range", option, *value),
-               fmt::format("give a number from {} to {}", min, max));
-}
-
-Status check_ball(const BakeSettings& settings) {
-  for (const Status& status : {check_range("--ball-mass", settings.ball_mass_kg, 0.001, 10000.0),
-                               check_range("--ball-speed", settings.ball_speed_m_s, 0.01, 1000.0),
-                               check_range("--ball-radius", settings.ball_radius_m, 0.005, 5.0)})
-    if (!status) return status.error();
-  return Done{};
 }
 
 Result<ImpactPreset> preset_named(const std::string& text) {
@@ -207,8 +185,8 @@ Result<Direction> parse_direction(std::string_view text) {
   for (std::size_t i = 0; i < kDirectionNames.size(); ++i)
     if (text == kDirectionNames[i]) return words[i];
   const auto comma = text.find(',');
-  const auto azimuth = number(text.substr(0, comma));
-  const auto elevation = comma == text.npos ? std::optional(0.0) : number(text.substr(comma + 1));
+  const auto azimuth = number_in(text.substr(0, comma));
+  const auto elevation = comma == text.npos ? std::optional(0.0) : number_in(text.substr(comma + 1));
   const std::string what = fmt::format("'{}' is not a direction", text);
   if (!azimuth || !elevation) {
     const std::string near = nearest_word(text, kDirectionNames);
@@ -246,7 +224,6 @@ Result<SceneKind> parse_scene(std::string_view text) {
 std::string_view name(SceneKind scene) { return kSceneNames[static_cast<std::size_t>(scene)]; }
 
 Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelvis) {
-  if (const Status status = check_ball(settings); !status) return status.error();
   const auto target = parse_segment(settings.hit);
   if (!target) return target.error();
   const auto from = parse_direction(settings.from);
@@ -273,10 +250,9 @@ Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelv
   return scene;
 }
 
-Status check_scene(const BakeSettings& settings) {
-  const auto scene = scene_of(settings, Quat::Identity());
-  if (!scene) return scene.error();
-  return Done{};
+Status check_preset(const std::string& text) {
+  const auto preset = preset_named(text);
+  return preset ? Status(Done{}) : Status(preset.error());
 }
 
 std::optional<std::string> preset_in_use(const BakeSettings& settings) {

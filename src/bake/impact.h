@@ -45,17 +45,17 @@ Result<Direction> parse_direction(std::string_view text);
 /// that lies on its front or back, the way its head or feet point.
 Vec3 travel_direction(const Direction& from, const Quat& world_from_pelvis);
 
+/// Whether there is a preset of that name. Errors: usage, with the nearest name.
+Status check_preset(const std::string& name);
+
 Result<Segment> parse_segment(std::string_view text);
 Result<SceneKind> parse_scene(std::string_view text);
 std::string_view name(SceneKind scene);
 
 /// The blow of a bake: the preset's numbers, replaced by what the settings give. A push or an impulse without
 /// numbers of its own carries the ball's momentum. Errors: usage (unknown segment, direction, preset or
-/// scene, value out of range), input (presets file).
+/// scene), input (presets file).
 Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelvis);
-
-/// The same without a character: whether the words and numbers of the settings make a scene at all.
-Status check_scene(const BakeSettings& settings);
 
 /// The preset whose numbers are used, or nothing where the settings replace them all.
 std::optional<std::string> preset_in_use(const BakeSettings& settings);

@@ -11,10 +11,10 @@
 #include "bake/compare.h"
 #include "bake/compare_pictures.h"
 #include "base/files.h"
-#include "cli/character_options.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
+#include "cli/settings_options.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -38,12 +38,12 @@ Error usage(std::string what, std::string fix) {
 
 /// A whole number from `low` to `high`. Errors: usage.
 template <typename Number>
-Status take_whole(std::string_view option, const std::string& text, Number low, Number high, Number& target) {
+Status take_whole(const std::string& text, Number low, Number high, Number& target) {
   Number value{};
   const char* end = text.data() + text.size();
   const auto [parsed, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc() || parsed != end || value < low || value > high)
-    return usage(fmt::format("{}: '{}' is not a whole number from {} to {}", option, text, low, high),
+    return usage(fmt::format("'{}' is not a whole number from {} to {}", text, low, high),
                  fmt::format("give a whole number from {} to {}", low, high));
   target = value;
   return Done{};
@@ -56,14 +56,12 @@ void declare(Options& options, CompareRequest& request) {
   options.group("experiment");
   options.custom(
       "--hits", "N",
-      [&settings](const std::string& text) {
-        return take_whole("--hits", text, 1, kMostHits, settings.hits);
-      },
+      [&settings](const std::string& text) { return take_whole(text, 1, kMostHits, settings.hits); },
       fmt::format("random hits for each method [default {}; 1 to {}]", settings.hits, kMostHits));
   options.custom(
       "--seed", "N",
       [&settings](const std::string& text) {
-        return take_whole<std::uint64_t>("--seed", text, 0, UINT64_MAX, settings.seed);
+        return take_whole<std::uint64_t>(text, 0, UINT64_MAX, settings.seed);
       },
       fmt::format("of the hits [default {}]", settings.seed));
   options.text("--region", "NAME|FILE", settings.region,
@@ -77,7 +75,7 @@ void declare(Options& options, CompareRequest& request) {
                "folder for compare.json, compare.txt and the pictures; made where it is missing");
   options.custom(
       "--show", "HIT",
-      [&request](const std::string& text) { return take_whole("--show", text, 1, kMostHits, request.show); },
+      [&request](const std::string& text) { return take_whole(text, 1, kMostHits, request.show); },
       "which hit is drawn, 1 to N [default: the one in which (a) bends a joint farthest out]");
   options.flag("--json", request.json, "JSON to stdout in place of the table");
   options.flag("--quiet", request.quiet, "nothing to stdout, no warnings, no progress");

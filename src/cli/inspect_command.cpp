@@ -1,10 +1,10 @@
 #include <string>
 
 #include "bake/inspect.h"
-#include "cli/character_options.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
+#include "cli/settings_options.h"
 
 namespace ukemi {
 

@@ -4,8 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include "bake/nearest.h"
 
@@ -84,21 +82,6 @@ std::string long_name(const std::string& names) {
 
 }  // namespace
 
-std::string Range::text() const {
-  return above_min ? fmt::format("above {}, at most {}", min, max) : fmt::format("{} to {}", min, max);
-}
-
-Result<double> parse_number(std::string_view option, std::string_view text, const Range& range) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [parsed, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || parsed != end || !std::isfinite(value))
-    return usage(fmt::format("{}: '{}' is not a number", option, text), "give a number, " + range.text());
-  if (!range.contains(value))
-    return usage(fmt::format("{}: {} is out of range", option, text), "give a number, " + range.text());
-  return value;
-}
-
 struct Options::Parser {
   CLI::App app;
   std::string group = "options";
@@ -115,7 +98,9 @@ struct Options::Parser {
         error = usage(fmt::format("{} is given {} times", name, values.size()), "give it once");
       for (const std::string& text : values) {
         const Status status = take(text);
-        if (!status && !error) error = status.error();
+        if (status || error) continue;
+        error = status.error();
+        error->what = fmt::format("{}: {}", name, error->what);
       }
       return true;
     };
@@ -126,10 +111,8 @@ struct Options::Parser {
     return option;
   }
 
-  void declare_flag(const std::string& flags, bool& target, bool value, const std::string& help) {
-    app.add_flag_callback(
-           flags, [&target, value] { target = value; }, help)
-        ->group(group);
+  void declare_flag(const std::string& flags, std::function<void()> take, const std::string& help) {
+    app.add_flag_callback(flags, std::move(take), help)->group(group);
     names.push_back(long_name(flags));
   }
 
@@ -209,22 +192,9 @@ void Options::text(const std::string& names, const std::string& value, std::opti
 
 void Options::number(const std::string& names, const std::string& unit, double& target, const Range& range,
                      const std::string& help) {
-  const std::string name = long_name(names);
   parser_->declare(names, unit, with_notes(help, {fmt::format("default {}", target), range.text()}), false,
-                   [&target, range, name](const std::string& text) -> Status {
-                     const auto value = parse_number(name, text, range);
-                     if (!value) return value.error();
-                     target = *value;
-                     return Done{};
-                   });
-}
-
-void Options::number(const std::string& names, const std::string& unit, std::optional<double>& target,
-                     const Range& range, const std::string& help) {
-  const std::string name = long_name(names);
-  parser_->declare(names, unit, with_notes(help, {range.text()}), false,
-                   [&target, range, name](const std::string& text) -> Status {
-                     const auto value = parse_number(name, text, range);
+                   [&target, range](const std::string& text) -> Status {
+                     const auto value = parse_number(text, range);
                      if (!value) return value.error();
                      target = *value;
                      return Done{};
@@ -232,11 +202,10 @@ void Options::number(const std::string& names, const std::string& unit, std::opt
 }
 
 void Options::path(const std::string& names, std::filesystem::path& target, const std::string& help) {
-  const std::string name = long_name(names);
   custom(
       names, "FILE",
-      [&target, name](const std::string& text) -> Status {
-        if (text.empty()) return usage(name + ": the file's name is empty", "name a file");
+      [&target](const std::string& text) -> Status {
+        if (text.empty()) return usage("the file's name is empty", "name a file");
         target = text;
         return Done{};
       },
@@ -245,11 +214,10 @@ void Options::path(const std::string& names, std::filesystem::path& target, cons
 
 void Options::paths(const std::string& names, std::vector<std::filesystem::path>& target,
                     const std::string& help) {
-  const std::string name = long_name(names);
   custom(
       names, "FILE",
-      [&target, name](const std::string& text) -> Status {
-        if (text.empty()) return usage(name + ": the file's name is empty", "name a file");
+      [&target](const std::string& text) -> Status {
+        if (text.empty()) return usage("the file's name is empty", "name a file");
         target.emplace_back(text);
         return Done{};
       },
@@ -257,28 +225,20 @@ void Options::paths(const std::string& names, std::vector<std::filesystem::path>
 }
 
 void Options::flag(const std::string& names, bool& target, const std::string& help) {
-  parser_->declare_flag(names, target, true, help);
+  flag(
+      names, [&target] { target = true; }, help);
 }
 
-void Options::on_off(const std::string& name, bool& target, const std::string& help,
-                     const std::string& opposite) {
-  const bool on = target;
-  parser_->declare_flag("--" + name, target, true, with_notes(help, {on ? "default" : ""}));
-  parser_->declare_flag("--no-" + name, target, false, with_notes(opposite, {on ? "" : "default"}));
+void Options::flag(const std::string& names, std::function<void()> take, const std::string& help) {
+  parser_->declare_flag(names, std::move(take), help);
 }
 
-void Options::choice(const std::string& names, const std::vector<std::string>& words, std::size_t chosen,
-                     std::function<void(std::size_t)> take, const std::string& help) {
-  const std::string name = long_name(names);
-  parser_->declare(
-      names, fmt::format("{}", fmt::join(words, "|")), with_notes(help, {"default " + words[chosen]}), false,
-      [words, take = std::move(take), name](const std::string& text) -> Status {
-        const auto found = std::find(words.begin(), words.end(), text);
-        if (found == words.end())
-          return usage(fmt::format("{}: unknown word '{}'", name, text), suggestion(text, words));
-        take(static_cast<std::size_t>(found - words.begin()));
-        return Done{};
-      });
+void Options::on_off(const std::string& name, bool on, std::function<void(bool)> take,
+                     const std::string& help, const std::string& opposite) {
+  parser_->declare_flag(
+      "--" + name, [take] { take(true); }, with_notes(help, {on ? "default" : ""}));
+  parser_->declare_flag(
+      "--no-" + name, [take] { take(false); }, with_notes(opposite, {on ? "" : "default"}));
 }
 
 Result<Options::Outcome> Options::parse(const std::vector<std::string>& arguments) {

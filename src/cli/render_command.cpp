@@ -5,10 +5,10 @@
 #include "bake/outputs.h"
 #include "bake/sheet.h"
 #include "base/files.h"
-#include "cli/character_options.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
+#include "cli/settings_options.h"
 
 namespace ukemi {
 namespace {

@@ -5,10 +5,10 @@
 #include "bake/outputs.h"
 #include "bake/rom.h"
 #include "base/files.h"
-#include "cli/character_options.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
+#include "cli/settings_options.h"
 
 namespace ukemi {
 namespace {
@@ -23,11 +23,11 @@ Status take_state(RomSettings& settings, const std::string& text) {
                  0,
                  0,
                  "",
-                 fmt::format("--state: '{}' is not AY,AZ", text),
+                 fmt::format("'{}' is not AY,AZ", text),
                  "give two angles in degrees, as in --state=20,-35"};
-  const auto a_y = parse_number("--state", text.substr(0, comma), kSwingRange);
+  const auto a_y = parse_number(text.substr(0, comma), kSwingRange);
   if (!a_y) return a_y.error();
-  const auto a_z = parse_number("--state", text.substr(comma + 1), kSwingRange);
+  const auto a_z = parse_number(text.substr(comma + 1), kSwingRange);
   if (!a_z) return a_z.error();
   settings.state = Vec2(radians(*a_y), radians(*a_z));
   return Done{};

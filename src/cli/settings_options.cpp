@@ -1,0 +1,51 @@
+#include "cli/settings_options.h"
+
+#include <fmt/format.h>
+
+#include "bake/settings.h"
+
+namespace ukemi {
+namespace {
+
+/// What the help says of the value when none is given, and of what is legal.
+template <typename Target>
+std::string help_of(const SettingOf<Target>& setting, const Target& target) {
+  const std::vector<std::string> values = setting.get(target);
+  const std::string initial = values.empty() || values.front().empty() ? setting.unset : values.front();
+  std::vector<std::string> notes;
+  if (!initial.empty()) notes.push_back("default " + initial);
+  if (setting.kind == SettingOf<Target>::Kind::number) notes.push_back(setting.range.text());
+  return notes.empty() ? setting.help : fmt::format("{} [{}]", setting.help, fmt::join(notes, "; "));
+}
+
+template <typename Target>
+void declare(Options& options, const SettingOf<Target>& setting, Target& target) {
+  using Kind = typename SettingOf<Target>::Kind;
+  const auto take = [&setting, &target](const std::string& text) { return setting.set(target, text); };
+  const std::string option = fmt::format("--{}", setting.name);
+  if (setting.kind != Kind::on_off)
+    return options.custom(option, setting.value, take, help_of(setting, target), setting.kind == Kind::list);
+  const auto turn = [&setting, &target](bool on) {  // both words are legal
+    static_cast<void>(setting.set(target, on ? "true" : "false"));
+  };
+  if (setting.get(target).front() == "true")
+    options.on_off(std::string(setting.name), true, turn, setting.help, setting.opposite);
+  else
+    options.flag(
+        option, [turn] { turn(true); }, setting.help);
+}
+
+}  // namespace
+
+void declare_humanoid_options(Options& options, HumanoidOptions& target) {
+  for (const HumanoidSetting& setting : humanoid_settings()) declare(options, setting, target);
+}
+
+void declare_bake_options(Options& options, BakeSettings& target) {
+  for (const Setting& setting : bake_settings()) {
+    options.group(std::string(setting.group));
+    declare(options, setting, target);
+  }
+}
+
+}  // namespace ukemi

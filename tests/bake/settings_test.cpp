@@ -1,0 +1,78 @@
+#include "bake/settings.h"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "bake/bake.h"
+
+namespace ukemi {
+namespace {
+
+/// A legal value that is not the default.
+std::string another_value(const Setting& setting) {
+  static const std::map<std::string_view, std::string> texts = {
+      {"hit", "head"},       {"from", "30,10"},         {"preset", "kick"},    {"scene", "fall"},
+      {"region", "diamond"}, {"active-file", "a.toml"}, {"rate", "fixed:480"}, {"map", "head=Head"},
+      {"unit", "0.0254"},    {"pose", "guard"},         {"clip", "walk"}};
+  const BakeSettings defaults;
+  const auto values = setting.get(defaults);
+  const std::string current = values.empty() ? "" : values.front();
+  switch (setting.kind) {
+    case Setting::Kind::number:
+      return fmt::format("{}", current == "1" ? 2 : 1);
+    case Setting::Kind::choice:
+      return setting.words[setting.words[0] == current ? 1 : 0];
+    case Setting::Kind::on_off:
+      return current == "true" ? "false" : "true";
+    default:
+      return texts.count(setting.name) ? texts.at(setting.name) : "";
+  }
+}
+
+TEST(Settings, ValuesGoInAndComeOutAgain) {
+  for (const Setting& setting : bake_settings()) {
+    BakeSettings settings;
+    const std::string value = another_value(setting);
+    ASSERT_FALSE(value.empty()) << setting.name;
+    const Status status = setting.set(settings, value);
+    ASSERT_TRUE(status) << setting.name << ": " << status.error().message();
+    EXPECT_EQ(setting.get(settings), std::vector<std::string>{value}) << setting.name;
+    EXPECT_NE(setting.get(BakeSettings()), std::vector<std::string>{value}) << setting.name;
+    EXPECT_TRUE(check_values(settings));
+  }
+}
+
+TEST(Settings, EachHasOneNameAndTheGroupsAreContiguous) {
+  std::set<std::string_view> names, closed;
+  std::string_view group;
+  for (const Setting& setting : bake_settings()) {
+    EXPECT_TRUE(names.insert(setting.name).second) << setting.name;
+    EXPECT_FALSE(setting.help.empty()) << setting.name;
+    if (setting.group == group) continue;
+    EXPECT_TRUE(closed.insert(setting.group).second) << setting.group;
+    group = setting.group;
+  }
+}
+
+TEST(Settings, RefuseWhatIsNotLegalAndTellWhatIs) {
+  BakeSettings settings;
+  EXPECT_EQ((*find_setting("fps"))->set(settings, "0").error().what, "0 is out of range");
+  EXPECT_EQ((*find_setting("keys"))->set(settings, "al").error().fix, "did you mean 'all'?");
+  EXPECT_EQ((*find_setting("hit"))->set(settings, "haed").error().fix, "did you mean 'head'?");
+  EXPECT_EQ(find_setting("fsp").error().fix, "did you mean 'fps'?");
+}
+
+TEST(Settings, AValueThatALibraryUserPutsThereIsCheckedToo) {
+  BakeSettings settings;
+  settings.ball_mass_kg = -1.0;
+  const Status status = check_values(settings);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().what, "ball-mass: -1 is out of range");
+}
+
+}  // namespace
+}  // namespace ukemi
