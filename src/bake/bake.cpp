@@ -91,12 +91,6 @@ void make_clip(const Character& character, BakeOutcome& outcome) {
     outcome.clip.marks.push_back({"rest", *figures.rest_time_s});
 }
 
-/// Every output's bytes, before the first is written.
-struct Prepared {
-  fs::path path;
-  std::vector<std::uint8_t> bytes;
-};
-
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
 Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Character& character,
@@ -119,25 +113,24 @@ Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Chara
   return bytes_of(*text);
 }
 
-Result<std::vector<Prepared>> prepare_outputs(const Character& character, const BakeSettings& settings,
-                                              BakedFile& baked) {
+/// Fills `baked.files`.
+Status prepare_files(const Character& character, const BakeSettings& settings, BakedFile& baked) {
   Stopwatch watch;
-  std::vector<Prepared> prepared;
   baked.reduced = reduce_keys(character.skeleton, baked.outcome.clip, baked.outcome.humanoid.world_from_file,
                               settings.keys);
   for (const fs::path& path : settings.outputs) {
     auto bytes = output_bytes(path, character, settings, baked.outcome, baked.reduced);
     if (!bytes) return bytes.error();
-    prepared.push_back({path, std::move(*bytes)});
+    baked.files.push_back({path, std::move(*bytes)});
   }
   baked.outcome.timings_s.export_ = watch.lap();
   if (!settings.sheet.empty()) {
     auto png = bake_sheet(character, settings, baked.outcome);
     if (!png) return png.error();
-    prepared.push_back({settings.sheet, std::move(*png)});
+    baked.files.push_back({settings.sheet, std::move(*png)});
     baked.outcome.timings_s.render = watch.lap();
   }
-  return prepared;
+  return Done{};
 }
 
 }  // namespace
@@ -150,6 +143,7 @@ Result<fs::path> character_path(const std::string& character) {
 std::string generator() { return std::string("ukemi ") + UKEMI_VERSION; }
 
 std::string reaction_name(const BakeSettings& settings) {
+  if (!settings.reaction.empty()) return settings.reaction;
   std::string from = settings.from;
   std::replace(from.begin(), from.end(), ',', '_');
   return settings.hit + "_" + from;
@@ -203,6 +197,26 @@ Result<BakeOutcome> bake(const Character& character, const BakeSettings& setting
   return outcome;
 }
 
+Result<BakedFile> bake_loaded(const Character& character, const BakeSettings& settings,
+                              Diagnostics& diagnostics) {
+  auto outcome = bake(character, settings, diagnostics);
+  if (!outcome) return outcome.error();
+  BakedFile baked{std::move(*outcome), {}, {}, {}};
+  if (const Status status = prepare_files(character, settings, baked); !status) return status.error();
+  baked.outcome.timings_s.total += baked.outcome.timings_s.export_ + baked.outcome.timings_s.render;
+  return baked;
+}
+
+Status write_files(BakedFile& baked) {
+  Stopwatch watch;
+  for (const OutputFile& file : baked.files)
+    if (const Status status = write_file(file.path, file.bytes); !status) return status.error();
+  const double write_s = watch.lap();
+  baked.outcome.timings_s.export_ += write_s;
+  baked.outcome.timings_s.total += write_s;
+  return Done{};
+}
+
 Result<BakedFile> bake_file(const std::string& character, const BakeSettings& settings,
                             Diagnostics& diagnostics) {
   if (const Status status = check_settings(character, settings); !status) return status.error();
@@ -212,20 +226,14 @@ Result<BakedFile> bake_file(const std::string& character, const BakeSettings& se
   const auto loaded = load_character(*path, LoadOptions{}, diagnostics);
   if (!loaded) return loaded.error();
   const double load_s = watch.lap();
-  auto outcome = bake(*loaded, settings, diagnostics);
-  if (!outcome) return outcome.error();
-  BakedFile baked{std::move(*outcome), {}, {}};
-  baked.outcome.timings_s.load += load_s;
-  const auto prepared = prepare_outputs(*loaded, settings, baked);
-  if (!prepared) return prepared.error();
-  watch.lap();
-  for (const Prepared& output : *prepared)
-    if (const Status status = write_file(output.path, output.bytes); !status) return status.error();
-  baked.outcome.timings_s.export_ += watch.lap();
-  baked.outcome.timings_s.total = watch.total();
-  baked.report = report_json(character, *loaded, settings, baked.outcome, baked.reduced, diagnostics);
+  auto baked = bake_loaded(*loaded, settings, diagnostics);
+  if (!baked) return baked.error();
+  if (const Status status = write_files(*baked); !status) return status.error();
+  baked->outcome.timings_s.load += load_s;
+  baked->outcome.timings_s.total = watch.total();
+  baked->report = report_json(character, *loaded, settings, baked->outcome, baked->reduced, diagnostics);
   if (!settings.report.empty())
-    if (const Status status = write_file(settings.report, baked.report); !status) return status.error();
+    if (const Status status = write_file(settings.report, baked->report); !status) return status.error();
   return baked;
 }
 

@@ -1,6 +1,7 @@
 // The stages in a row: a character and an impact in, a clip, its pictures and its report out.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -48,6 +49,7 @@ struct BakeSettings {
   double hold_s = 0.25;    // kept of it
   KeyReduction keys;
   // out
+  std::string reaction;  // name of the clip; empty: SEGMENT_FROM
   std::vector<std::filesystem::path> outputs;
   bool clip_only = false;  // glTF without the mesh
   std::optional<double> bvh_metres_per_unit;
@@ -76,11 +78,17 @@ struct BakeOutcome {
   BakeTimings timings_s;
 };
 
-/// What was written, and the report on it.
+struct OutputFile {
+  std::filesystem::path path;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// A bake with its files, and the report on it.
 struct BakedFile {
   BakeOutcome outcome;
   ReducedClip reduced;
-  std::string report;  // JSON, format 1
+  std::vector<OutputFile> files;  // clips and sheet
+  std::string report;             // JSON, format 1
 };
 
 /// "mannequin" is the program's own character, everything else a file.
@@ -89,7 +97,7 @@ Result<std::filesystem::path> character_path(const std::string& character);
 /// "ukemi 0.1.0"
 std::string generator();
 
-/// The name a bake's clip gets: SEGMENT_FROM.
+/// The name a bake's clip gets: that of the settings, else SEGMENT_FROM.
 std::string reaction_name(const BakeSettings& settings);
 
 /// What is wrong with the settings, told without a character: words, numbers, outputs (extension, folder,
@@ -103,6 +111,14 @@ Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings&
 
 /// Runs the stages on a loaded character. Errors: those of the stages.
 Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics);
+
+/// Bakes a loaded character and makes every file that the settings name; nothing is written, the report not
+/// made. Errors: those of the stages.
+Result<BakedFile> bake_loaded(const Character& character, const BakeSettings& settings,
+                              Diagnostics& diagnostics);
+
+/// Writes the clips and the sheet of a bake. Errors: output.
+Status write_files(BakedFile& baked);
 
 /// Loads, bakes and writes every output. `character` is a file or "mannequin". Nothing is written when
 /// anything fails before the first write.
