@@ -83,14 +83,6 @@ double position_jump(const Character& character, const BakeOutcome& outcome) {
   return largest;
 }
 
-/// Difference of the pelvis's velocity over the first frame from that of the clip.
-double velocity_jump(const BakeOutcome& outcome) {
-  constexpr int pelvis = index(Segment::pelvis);
-  const Trajectory& trajectory = outcome.simulation.trajectory;
-  const Vec3 moved = trajectory.frames[1][pelvis].translation - trajectory.frames[0][pelvis].translation;
-  return (moved * trajectory.fps - outcome.start.state.linear_velocity[pelvis]).norm();
-}
-
 Json impact_json(const Character& character, const BakeSettings& settings, const BakeOutcome& outcome) {
   const Scene& scene = outcome.scene;
   Json json;
@@ -99,9 +91,10 @@ Json impact_json(const Character& character, const BakeSettings& settings, const
   json["time_s"] = 0.0;
   json["momentum_n_s"] = outcome.simulation.figures.momentum_n_s;
   json["first_ground_contact_s"] = or_null(outcome.simulation.figures.first_ground_contact_s);
-  const bool from_clip = outcome.start.from_clip && outcome.clip.frames.size() > 1;
+  const bool from_clip = outcome.start.from_clip;
   json["position_jump_m"] = from_clip ? Json(position_jump(character, outcome)) : Json(nullptr);
-  json["velocity_jump_m_s"] = from_clip ? Json(velocity_jump(outcome)) : Json(nullptr);
+  json["velocity_jump_m_s"] =
+      from_clip ? Json(velocity_jump(character.skeleton, outcome.humanoid, outcome.start)) : Json(nullptr);
   json["scene"] = name(scene.kind);
   json["from"] = settings.from;
   json["direction"] = numbers(scene.direction);

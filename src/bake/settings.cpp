@@ -271,11 +271,16 @@ Settings start_settings() {
   using S = BakeSettings;
   return {
       with_unset(text<S>(
-                     "pose", "rest|stand|guard", "still pose to start from",
+                     "pose", "rest|stand|guard|FILE",
+                     "still pose to start from: a word, or the first frame (without clips the rest pose) of "
+                     "another humanoid's .bvh .glb .gltf .vrm .fbx .dae file",
                      [](auto& s) -> auto& { return s.pose; }),
                  "stand; a file that only has motion starts from its own clip"),
       text<S>(
-          "clip", "NAME", "clip of the file to start from, by its name or #INDEX",
+          "clip", "NAME|FILE[#NAME]",
+          "motion to start from: a clip of the file, by its name or #INDEX, or of another humanoid's file "
+          "(its "
+          "first, unless named after '#'), whose segments then lead the character's",
           [](auto& s) -> auto& { return s.clip; }),
       with_unset(number<S>(
                      "at", "S", Range{0.0, 86400.0}, "time in that clip at the first contact",

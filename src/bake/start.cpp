@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/bake.h"
+#include "bake/motion.h"
 #include "bake/nearest.h"
 
 namespace ukemi {
@@ -24,12 +25,15 @@ Error usage(std::string what, std::string fix) {
   return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
 }
 
-Result<StartPose> parse_pose(std::string_view text) {
+Result<Pose> still_pose(const Character& character, const Humanoid& humanoid, const std::string& text,
+                        Diagnostics& diagnostics) {
   const std::pair<std::string_view, StartPose> poses[] = {
       {"rest", StartPose::rest}, {"stand", StartPose::stand}, {"guard", StartPose::guard}};
   for (const auto& [word, pose] : poses)
-    if (word == text) return pose;
-  return usage(fmt::format("unknown pose '{}'", text), suggestion(text, {"rest", "stand", "guard"}));
+    if (word == text) return start_pose(character, humanoid, pose);
+  if (names_motion_file(text)) return pose_of_file(character, humanoid, text, diagnostics);
+  return usage(fmt::format("unknown pose '{}'", text),
+               suggestion(text, {"rest", "stand", "guard"}) + ", or name a .bvh, .glb or .fbx file");
 }
 
 double height_above_floor(const Character& character, const Humanoid& humanoid, const Pose& pose) {
@@ -86,35 +90,47 @@ std::vector<Pose> floor_samples(const Skeleton& skeleton, const Animation& anima
   return poses;
 }
 
-Start start_from_clip(const Character& character, const Humanoid& humanoid, std::size_t clip, double at_s,
-                      Diagnostics& diagnostics) {
-  const Animation& animation = character.animations[clip];
-  Start start;
-  start.name = clip_label(character, clip);
-  start.from_clip = true;
-  start.at_s = at_s;
-  start.pose = sample(character.skeleton, animation, animation.start_s + at_s);
-  const std::vector<Pose> poses = floor_samples(character.skeleton, animation);
-  const double floor_m = floor_of(character, humanoid, poses);
-  start.floor_m = std::min(floor_m, height_above_floor(character, humanoid, start.pose));
-  find_velocities(character.skeleton, humanoid, animation, animation.start_s + at_s, start.state,
-                  diagnostics);
-  return start;
-}
-
-/// The clip to start from, or nothing for a still pose.
-Result<std::optional<std::size_t>> clip_of(const Character& character, const BakeSettings& settings) {
+/// What a body starts from: its clip, or nothing for a still pose.
+Result<std::optional<Animation>> motion_of(const Character& character, const Humanoid& humanoid,
+                                           const BakeSettings& settings, Diagnostics& diagnostics) {
   if (settings.pose && settings.clip)
     return usage("--pose and --clip exclude each other", "give one of them");
+  std::size_t own = 0;
   if (settings.clip) {
     const auto clip = find_clip(character, *settings.clip);
+    if (!clip && names_motion_file(*settings.clip)) {
+      auto motion = motion_of_file(character, humanoid, *settings.clip, diagnostics);
+      if (!motion) return motion.error();
+      return std::optional(std::move(*motion));
+    }
     if (!clip) return clip.error();
-    return std::optional(*clip);
+    own = *clip;
+  } else if (settings.pose || !is_motion_only(character)) {
+    if (settings.at_s)
+      return usage("--at needs a clip to take the time from", "add --clip NAME, or leave --at away");
+    return std::optional<Animation>();
   }
-  if (!settings.pose && is_motion_only(character)) return std::optional(std::size_t{0});
-  if (settings.at_s)
-    return usage("--at needs a clip to take the time from", "add --clip NAME, or leave --at away");
-  return std::optional<std::size_t>();
+  std::optional<Animation> motion = character.animations[own];
+  motion->name = clip_label(character, own);
+  return motion;
+}
+
+Result<Start> start_from_motion(const Character& character, const Humanoid& humanoid, Animation motion,
+                                double at_s, Diagnostics& diagnostics) {
+  if (!(at_s >= 0.0) || at_s > motion.duration_s() + 1e-6)
+    return usage(fmt::format("--at {} lies outside the clip '{}'", at_s, motion.name),
+                 fmt::format("give a time from 0 to {:.3f} s", motion.duration_s()));
+  Start start;
+  start.name = motion.name;
+  start.from_clip = true;
+  start.at_s = at_s;
+  start.pose = sample(character.skeleton, motion, motion.start_s + at_s);
+  const std::vector<Pose> poses = floor_samples(character.skeleton, motion);
+  const double floor_m = floor_of(character, humanoid, poses);
+  start.floor_m = std::min(floor_m, height_above_floor(character, humanoid, start.pose));
+  find_velocities(character.skeleton, humanoid, motion, motion.start_s + at_s, start.state, diagnostics);
+  start.motion = std::move(motion);
+  return start;
 }
 
 }  // namespace
@@ -156,26 +172,49 @@ double floor_of(const Character& character, const Humanoid& humanoid, const std:
 
 Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings,
                        Diagnostics& diagnostics) {
-  const auto clip = clip_of(character, settings);
-  if (!clip) return clip.error();
+  auto motion = motion_of(character, humanoid, settings, diagnostics);
+  if (!motion) return motion.error();
   Start start;
-  if (*clip) {
-    const double at_s = settings.at_s.value_or(0.0);
-    const double duration_s = character.animations[**clip].duration_s();
-    if (!(at_s >= 0.0) || at_s > duration_s + 1e-6)
-      return usage(fmt::format("--at {} lies outside the clip '{}'", at_s, clip_label(character, **clip)),
-                   fmt::format("give a time from 0 to {:.3f} s", duration_s));
-    start = start_from_clip(character, humanoid, **clip, at_s, diagnostics);
+  if (*motion) {
+    auto from_motion =
+        start_from_motion(character, humanoid, std::move(**motion), settings.at_s.value_or(0.0), diagnostics);
+    if (!from_motion) return from_motion.error();
+    start = std::move(*from_motion);
   } else {
     start.name = settings.pose.value_or("stand");
-    const auto pose = parse_pose(start.name);
+    auto pose = still_pose(character, humanoid, start.name, diagnostics);
     if (!pose) return pose.error();
-    start.pose = start_pose(character, humanoid, *pose);
+    start.pose = std::move(*pose);
   }
   start.segments = canonical_segments_of(character.skeleton, humanoid, start.pose);
   start.state.segments = start.segments;
   for (Rigid& segment : start.state.segments) segment.translation.y() -= start.floor_m;
   return start;
+}
+
+Pose unhit_pose(const Skeleton& skeleton, const Start& start, double time_s) {
+  if (!start.motion || time_s == 0.0) return start.pose;
+  return sample(skeleton, *start.motion, start.motion->start_s + start.at_s + time_s);
+}
+
+double velocity_jump(const Skeleton& skeleton, const Humanoid& humanoid, const Start& start) {
+  if (!start.motion || !(start.motion->duration_s() > 0.0)) return 0.0;
+  const double now = start.motion->start_s + start.at_s;
+  const double before = std::max(start.motion->start_s, now - kVelocityStep);
+  const double after = std::min(start.motion->end_s, now + kVelocityStep);
+  const BodyPose a = segments_of(skeleton, humanoid, sample(skeleton, *start.motion, before));
+  const BodyPose b = segments_of(skeleton, humanoid, sample(skeleton, *start.motion, after));
+  double largest = 0.0;
+  for (int s = 0; s < kSegmentCount; ++s) {
+    const int parent = index(parent_of(segment_at(s)));
+    const Vec3& velocity = start.state.linear_velocity[s];
+    const Vec3 clip_velocity = (b[s].translation - a[s].translation) / (after - before);
+    const Vec3 from_parent = start.segments[s].translation - start.segments[parent].translation;
+    const Vec3 of_parent =
+        start.state.linear_velocity[parent] + start.state.angular_velocity[parent].cross(from_parent);
+    largest = std::max({largest, (velocity - clip_velocity).norm(), (velocity - of_parent).norm()});
+  }
+  return largest;
 }
 
 Pose moved(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose, const Vec3& offset) {

@@ -18,12 +18,24 @@ struct BakeSettings;
 struct Start {
   std::string name;  // "stand", or the clip's name
   bool from_clip = false;
-  double at_s = 0.0;   // of the clip
-  Pose pose;           // the file's units, as the file places it
+  double at_s = 0.0;  // of the clip
+  Pose pose;          // the file's units, as the file places it
+  /// What plays around the impact, on the character's own skeleton; `at_s` after its start_s is the impact.
+  std::optional<Animation> motion;
   BodyPose segments;   // of `pose`, canonical, world
   double floor_m = 0;  // height of the floor in the world
   StartState state;    // what the simulation is given: the same segments above a floor at y = 0
 };
+
+/// Pose `time_s` after the impact (before it where negative) of what the character does unhit: the start
+/// clip, held before its first and after its last moment, or the still start pose. File units and place, like
+/// start.pose; at 0 that very pose.
+Pose unhit_pose(const Skeleton& skeleton, const Start& start, double time_s);
+
+/// How far the start velocities of the segments' origins are from those of the start clip (central
+/// differences over 1/120 s), and at the joints from those of the parent segment: at most, m/s. 0 for a still
+/// pose.
+double velocity_jump(const Skeleton& skeleton, const Humanoid& humanoid, const Start& start);
 
 /// True where a file is motion alone: a BVH with frames, or no mesh, no skin and a single animation.
 bool is_motion_only(const Character& character);
@@ -38,8 +50,9 @@ Result<std::size_t> find_clip(const Character& character, std::string_view name)
 /// lowest twentieth of the poses.
 double floor_of(const Character& character, const Humanoid& humanoid, const std::vector<Pose>& poses);
 
-/// The start that the settings ask for. Errors: usage (--pose and --clip together, --at without a clip or
-/// outside it, unknown pose or clip).
+/// The start that the settings ask for. Pose and clip may be of another file: see motion.h. Errors: usage
+/// (--pose and --clip together, --at without a clip or outside it, unknown pose or clip), input (another file
+/// that cannot be read, is no humanoid or holds no clip).
 Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings,
                        Diagnostics& diagnostics);
 

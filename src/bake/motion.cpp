@@ -1,0 +1,168 @@
+#include "bake/motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "bake/inspect.h"
+#include "bake/start.h"
+#include "humanoid/transfer.h"
+#include "load/load.h"
+
+namespace ukemi {
+namespace {
+
+constexpr double kMostKeys_hz = 60.0;
+constexpr std::array<std::string_view, 7> kExtensions = {".bvh",  ".glb", ".gltf", ".vrm",
+                                                         ".vrma", ".fbx", ".dae"};
+
+bool ends_like(std::string_view text, std::string_view ending) {
+  if (text.size() <= ending.size()) return false;
+  return std::equal(ending.begin(), ending.end(), text.end() - static_cast<std::ptrdiff_t>(ending.size()),
+                    [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+}
+
+bool is_motion_file(std::string_view file) {
+  return std::any_of(kExtensions.begin(), kExtensions.end(),
+                     [&](std::string_view extension) { return ends_like(file, extension); });
+}
+
+/// A file and the clip after '#'.
+struct FileAndClip {
+  std::string file;
+  std::optional<std::string> clip;
+};
+
+std::optional<FileAndClip> split(std::string_view text) {
+  if (is_motion_file(text)) return FileAndClip{std::string(text), std::nullopt};
+  for (std::size_t hash = text.find('#'); hash != text.npos; hash = text.find('#', hash + 1))
+    if (is_motion_file(text.substr(0, hash)))
+      return FileAndClip{std::string(text.substr(0, hash)), std::string(text.substr(hash + 1))};
+  return std::nullopt;
+}
+
+/// A loaded file, mapped, and which of its clips is meant; none in a file without clips.
+struct Source {
+  Character character;
+  Humanoid humanoid;
+  std::optional<std::size_t> clip;
+};
+
+/// "#2" and "2" mean the third clip where none has that name.
+Result<std::size_t> clip_in(const Character& character, const std::string& name) {
+  const bool digits = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+  const auto named = find_clip(character, name);
+  return !named && digits ? find_clip(character, "#" + name) : named;
+}
+
+Result<Source> open(const std::string& text, Diagnostics& diagnostics) {
+  const auto wanted = split(text);
+  const FileAndClip what = wanted.value_or(FileAndClip{text, std::nullopt});
+  auto character = load_character(what.file, LoadOptions{}, diagnostics);
+  if (!character) return character.error();
+  auto humanoid = map_humanoid(*character, HumanoidOptions{}, diagnostics);
+  if (!humanoid) return humanoid.error();
+  Source source{std::move(*character), std::move(*humanoid), std::nullopt};
+  if (what.clip) {
+    const auto clip = clip_in(source.character, *what.clip);
+    if (!clip) return clip.error();
+    source.clip = *clip;
+  } else if (!source.character.animations.empty()) {
+    source.clip = 0;
+  }
+  return source;
+}
+
+/// Times from 0 to the end of the clip, on its own frames where those are at most 60 a second.
+std::vector<double> key_times(const Animation& animation) {
+  const double native = native_rate(animation);
+  const double rate = native > 0.0 ? native / std::ceil(native / kMostKeys_hz - 1e-6) : kMostKeys_hz;
+  std::vector<double> times;
+  const double duration_s = animation.duration_s();
+  for (int i = 0; i / rate < duration_s - 0.5 / kMostKeys_hz; ++i) times.push_back(i / rate);
+  if (times.empty() || duration_s > 0.0) times.push_back(duration_s);
+  return times;
+}
+
+/// Tracks of every node that is ever elsewhere than at rest.
+Animation animation_of(const Skeleton& skeleton, const std::vector<double>& times,
+                       const std::vector<Pose>& poses) {
+  Animation animation;
+  animation.end_s = times.back();
+  for (int i = 0; i < skeleton.size(); ++i) {
+    const LocalTransform& rest = skeleton.nodes[i].rest;
+    Track rotation{i, TrackPath::rotation, Interpolation::linear, times, {}};
+    Track translation{i, TrackPath::translation, Interpolation::linear, times, {}};
+    bool turns = false, moves = false;
+    for (const Pose& pose : poses) {
+      const Quat& q = pose[i].rotation;
+      const Vec3& t = pose[i].translation;
+      rotation.values.insert(rotation.values.end(), {q.x(), q.y(), q.z(), q.w()});
+      translation.values.insert(translation.values.end(), {t.x(), t.y(), t.z()});
+      turns = turns || !(q.coeffs() == rest.rotation.coeffs());
+      moves = moves || t != rest.translation;
+    }
+    if (turns) animation.tracks.push_back(std::move(rotation));
+    if (moves) animation.tracks.push_back(std::move(translation));
+  }
+  return animation;
+}
+
+Vec3 pelvis_of(const Character& character, const Humanoid& humanoid, const Pose& pose) {
+  return segments_of(character.skeleton, humanoid, pose)[index(Segment::pelvis)].translation;
+}
+
+}  // namespace
+
+bool names_motion_file(std::string_view text) { return split(text).has_value(); }
+
+Result<Animation> motion_of_file(const Character& character, const Humanoid& humanoid,
+                                 const std::string& text, Diagnostics& diagnostics) {
+  const auto source = open(text, diagnostics);
+  if (!source) return source.error();
+  if (!source->clip)
+    return Error{ErrorKind::input,
+                 source->character.path.string(),
+                 0,
+                 0,
+                 "",
+                 "holds no clip",
+                 "name a file with a clip, or use it as --pose"};
+  const Animation& clip = source->character.animations[*source->clip];
+  const Transfer transfer(character, humanoid, source->character, source->humanoid);
+  const std::vector<double> times = key_times(clip);
+  std::vector<Pose> poses;
+  for (const double time_s : times)
+    poses.push_back(transfer(sample(source->character.skeleton, clip, clip.start_s + time_s)));
+  Vec3 offset =
+      pelvis_of(character, humanoid, humanoid.reference) - pelvis_of(character, humanoid, poses.front());
+  offset.y() = -floor_of(character, humanoid, poses);
+  for (Pose& pose : poses) pose = moved(character.skeleton, humanoid, pose, offset);
+  Animation animation = animation_of(character.skeleton, times, poses);
+  animation.name = fmt::format("{}: {}", source->character.path.filename().string(),
+                               clip_label(source->character, *source->clip));
+  animation.fps = clip.fps;
+  return animation;
+}
+
+Result<Pose> pose_of_file(const Character& character, const Humanoid& humanoid, const std::string& text,
+                          Diagnostics& diagnostics) {
+  const auto source = open(text, diagnostics);
+  if (!source) return source.error();
+  const Transfer transfer(character, humanoid, source->character, source->humanoid);
+  Pose pose = rest_pose(source->character.skeleton);
+  if (source->clip) {
+    const Animation& clip = source->character.animations[*source->clip];
+    pose = sample(source->character.skeleton, clip, clip.start_s);
+  }
+  const Pose placed = transfer(pose);
+  Vec3 offset = pelvis_of(character, humanoid, humanoid.reference) - pelvis_of(character, humanoid, placed);
+  offset.y() = 0.0;
+  return stand_on_floor(character, humanoid, moved(character.skeleton, humanoid, placed, offset));
+}
+
+}  // namespace ukemi
