@@ -8,6 +8,7 @@
 namespace ukemi {
 namespace {
 
+constexpr double kThumbnailQuality = 82.0;
 constexpr double kSheetRate = 60.0;  // clips of files are sampled at most this often
 
 std::string blow_text(const BakeSettings& settings, const Scene& scene) {
@@ -99,12 +100,15 @@ Result<Shapes> place(const Character& character, Clip& clip, const RenderSetting
   return shapes;
 }
 
-}  // namespace
-
-Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const BakeSettings& settings,
-                                             const BakeOutcome& outcome) {
+Clip clip_on_floor(const Character& character, const BakeOutcome& outcome) {
   Clip clip = outcome.clip;
   put_on_floor(character, outcome.humanoid, outcome.start.floor_m, clip);
+  return clip;
+}
+
+/// Contract: all four outlive the shot.
+Shot shot_of(const Character& character, const BakeSettings& settings, const BakeOutcome& outcome,
+             const Clip& clip) {
   const Trajectory& trajectory = outcome.simulation.trajectory;
   Shot shot;
   shot.character = &character;
@@ -120,7 +124,24 @@ Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const B
           ? fmt::format("{}: falls away from {}", character.name, settings.from)
           : fmt::format("{}: {} hit from {}", character.name, name(outcome.scene.target), settings.from);
   shot.notes = figure_lines(settings, outcome);
-  return sheet_png(shot, false);
+  return shot;
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const BakeSettings& settings,
+                                             const BakeOutcome& outcome) {
+  const Clip clip = clip_on_floor(character, outcome);
+  return sheet_png(shot_of(character, settings, outcome, clip), false);
+}
+
+Result<std::vector<std::uint8_t>> bake_thumbnail(const Character& character, const BakeSettings& settings,
+                                                 const BakeOutcome& outcome,
+                                                 const ThumbnailOptions& options) {
+  const Clip clip = clip_on_floor(character, outcome);
+  const auto picture = render_thumbnail(shot_of(character, settings, outcome, clip), options);
+  if (!picture) return picture.error();
+  return encode_webp(*picture, kThumbnailQuality);
 }
 
 Result<RenderedClip> render_clip(const std::string& file, const RenderSettings& settings,

@@ -16,6 +16,12 @@ namespace ukemi {
 Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const BakeSettings& settings,
                                              const BakeOutcome& outcome);
 
+/// The bake in one small picture as a WebP of about 4 kB: the figure half-way through its motion, see-through
+/// where it starts, and the blow.
+Result<std::vector<std::uint8_t>> bake_thumbnail(const Character& character, const BakeSettings& settings,
+                                                 const BakeOutcome& outcome,
+                                                 const ThumbnailOptions& options = {});
+
 struct RenderSettings {
   std::optional<std::string> clip;  // default: the last of the file; the rest pose of a file without clips
   bool shapes = false;              // segment shapes in place of the mesh

@@ -15,6 +15,7 @@ const Rgba kBall = srgb(0xE07A3F);
 const Rgba kBallBand = srgb(0x7A3B1D);
 const Rgba kBox = srgb(0xD9A441);
 constexpr float kOverlayAlpha = 0.5f;
+constexpr float kGhostAlpha = 0.3f;
 
 Affine file_to_world(const Shot& shot) {
   if (shot.humanoid != nullptr) return shot.humanoid->world_from_file.affine();
@@ -188,8 +189,20 @@ Geometry Figure::body(int frame) const {
   return geometry;
 }
 
+Geometry Figure::ghost(int frame) const {
+  Geometry geometry = body(frame);
+  for (Piece& piece : geometry.pieces) {
+    piece.surface.alpha = Material::Alpha::blend;
+    piece.surface.color[3] = kGhostAlpha;
+    piece.surface.casts_shadow = false;
+    piece.surface.takes_shadow = false;
+    piece.surface.gloss = 0.0f;
+  }
+  return geometry;
+}
+
 FrameGeometry Figure::geometry(int frame) const {
-  FrameGeometry result{body(frame), {}};
+  FrameGeometry result{body(frame)};
   if (mesh_ && shapes_) add_shapes(result.overlay, frame, kOverlayAlpha);
   add_props(result.solid, frame);
   return result;

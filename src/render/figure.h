@@ -8,10 +8,11 @@
 
 namespace ukemi {
 
-/// What a frame shows. The overlay is drawn over everything else, see-through.
+/// What a frame shows.
 struct FrameGeometry {
   Geometry solid;
-  Geometry overlay;
+  Geometry ghost{};    // see-through as a whole: only its front is drawn
+  Geometry overlay{};  // the same, over everything else
 };
 
 /// Contract: the shot outlives the figure; every frame of the clip has one transform per node.
@@ -23,6 +24,8 @@ class Figure {
   std::vector<Vec3> joints(int frame) const;
   /// Mesh, shapes or bones alone.
   Geometry body(int frame) const;
+  /// The body as a see-through shape without shadow.
+  Geometry ghost(int frame) const;
   /// All of a frame but the floor and the blow's arrow.
   FrameGeometry geometry(int frame) const;
   /// Horizontal unit vector in which the figure looks at a frame; zero where nobody knows.

@@ -23,17 +23,27 @@ double weight_at(const Clip& clip, double time_s) {
   return 1.0;
 }
 
-/// Mean way of the points from the first frame to each frame, metres, weighted after the impact.
-std::vector<double> travelled(const Clip& clip, const std::vector<std::vector<Vec3>>& points) {
-  std::vector<double> way(clip.frames.size(), 0.0);
+/// Mean way of the points from the first frame to each frame, metres.
+std::vector<double> mean_way(const std::vector<std::vector<Vec3>>& points) {
+  std::vector<double> way(points.size(), 0.0);
   for (std::size_t frame = 1; frame < way.size(); ++frame) {
     double sum = 0.0;
     for (std::size_t i = 0; i < points[frame].size(); ++i)
       sum += (points[frame][i] - points[frame - 1][i]).norm();
-    const double mean = points[frame].empty() ? 0.0 : sum / static_cast<double>(points[frame].size());
-    way[frame] = way[frame - 1] + weight_at(clip, static_cast<double>(frame) / clip.fps) * mean +
-                 kIdleSpeed_m_s / clip.fps;
+    way[frame] =
+        way[frame - 1] + (points[frame].empty() ? 0.0 : sum / static_cast<double>(points[frame].size()));
   }
+  return way;
+}
+
+/// The same, weighted after the impact.
+std::vector<double> travelled(const Clip& clip, const std::vector<std::vector<Vec3>>& points) {
+  const std::vector<double> mean = mean_way(points);
+  std::vector<double> way(mean.size(), 0.0);
+  for (std::size_t frame = 1; frame < way.size(); ++frame)
+    way[frame] = way[frame - 1] +
+                 weight_at(clip, static_cast<double>(frame) / clip.fps) * (mean[frame] - mean[frame - 1]) +
+                 kIdleSpeed_m_s / clip.fps;
   return way;
 }
 
@@ -118,6 +128,15 @@ Clip with_rest_at_end(const Clip& clip, const std::vector<std::vector<Vec3>>& po
 }
 
 }  // namespace
+
+int halfway_frame(const Clip& clip, const std::vector<std::vector<Vec3>>& points) {
+  int from = 0;
+  for (const Mark& mark : clip.marks)
+    if (mark.name == "impact") from = frame_at(clip, mark.time_s);
+  const std::vector<double> way = mean_way(points);
+  const double half = 0.5 * (way[from] + way.back());
+  return static_cast<int>(std::lower_bound(way.begin() + from, way.end() - 1, half) - way.begin());
+}
 
 std::vector<Moment> choose_moments(const Clip& original, const std::vector<std::vector<Vec3>>& points,
                                    int count) {

@@ -19,4 +19,7 @@ struct Moment {
 /// in metres, as many in every frame. Contract: the clip has a frame, count > 0.
 std::vector<Moment> choose_moments(const Clip& clip, const std::vector<std::vector<Vec3>>& points, int count);
 
+/// The frame at which half the points' way is done, from the impact (or the start) on.
+int halfway_frame(const Clip& clip, const std::vector<std::vector<Vec3>>& points);
+
 }  // namespace ukemi

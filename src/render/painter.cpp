@@ -140,7 +140,7 @@ struct Painter::State {
                       const Vec3& to_key) const;
   void draw_floor(const Stage& stage, const Vec3& area) const;
   void draw_pieces(const Geometry& geometry) const;
-  void draw_overlay(const Geometry& geometry) const;
+  void draw_front(const Geometry& geometry) const;
   Picture read() const;
 };
 
@@ -395,11 +395,10 @@ void Painter::State::draw_pieces(const Geometry& geometry) const {
   gl.FrontFace(GL_CCW);
 }
 
-/// Only the front of the overlay, over everything else.
-void Painter::State::draw_overlay(const Geometry& geometry) const {
+/// Of what is seen through, only the front.
+void Painter::State::draw_front(const Geometry& geometry) const {
   if (geometry.indices.empty()) return;
   send(geometry);
-  gl.Clear(GL_DEPTH_BUFFER_BIT);
   gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   gl.Disable(GL_BLEND);
   gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(geometry.indices.size()), GL_UNSIGNED_INT, nullptr);
@@ -485,7 +484,9 @@ Picture Painter::draw(const FrameGeometry& frame, const Stage& stage) {
   gl.BindTexture(GL_TEXTURE_2D, s.light_map);
   gl.ActiveTexture(GL_TEXTURE0);
   s.draw_pieces(frame.solid);
-  s.draw_overlay(frame.overlay);
+  s.draw_front(frame.ghost);
+  gl.Clear(GL_DEPTH_BUFFER_BIT);
+  s.draw_front(frame.overlay);
   gl.Disable(GL_FRAMEBUFFER_SRGB);
   return s.read();
 }

@@ -9,21 +9,16 @@
 #include "render/figure.h"
 #include "render/offscreen.h"
 #include "render/render.h"
+#include "render/theme.h"
 
 namespace ukemi {
-
-struct Theme {
-  Rgba background = srgb(0xF3EFE8);
-  Rgba ground = srgb(0xE9E3D9);
-  Rgba line = srgb(0xB7AC9B, 0.75f);
-};
 
 struct Stage {
   Camera camera;
   double floor_y = 0.0;
   Vec3 focus = Vec3::Zero();  // middle of the action, on the floor
   double reach = 2.0;         // metres from the focus where the floor begins to fade
-  Theme theme;
+  Theme theme = ukemi::theme(ThemeKind::light);
 };
 
 /// One off-screen context with pictures of one size.

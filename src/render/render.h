@@ -23,6 +23,11 @@ struct Picture {
 
 Result<std::vector<std::uint8_t>> encode_png(const Picture& picture);
 
+/// Lossy, `quality` 0 to 100.
+Result<std::vector<std::uint8_t>> encode_webp(const Picture& picture, double quality);
+
+enum class ThemeKind { light, dark };
+
 /// What is drawn: a clip of a character, with what surrounds it. Pointers may be null and are not owned.
 struct Shot {
   const Character* character = nullptr;
@@ -44,6 +49,16 @@ struct SheetOptions {
   int cell_height = 360;
   bool shapes = false;
 };
+
+struct ThumbnailOptions {
+  int width = 288;
+  int height = 216;
+  ThemeKind theme = ThemeKind::light;
+};
+
+/// A reaction in one small picture: the figure half-way through its motion, see-through where it starts, and
+/// the blow. Errors: as render_sheet.
+Result<Picture> render_thumbnail(const Shot& shot, const ThumbnailOptions& options);
 
 /// Contact sheet: the same camera in every cell, each labelled with its time and phase.
 /// Errors: output when no off-screen context can be made.

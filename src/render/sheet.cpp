@@ -5,16 +5,12 @@
 
 #include "render/page.h"
 #include "render/staging.h"
+#include "render/studio.h"
 
 namespace ukemi {
 namespace {
 
 constexpr int kLongestPageSide = 32000;
-
-Error input_error(const Shot& shot, std::string what, std::string fix) {
-  return {ErrorKind::input, shot.character ? shot.character->path.string() : "", 0, 0, "", std::move(what),
-          std::move(fix)};
-}
 
 Error usage_error(std::string what, std::string fix) {
   return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
@@ -30,34 +26,6 @@ Status check(const SheetOptions& options) {
     return usage_error(
         fmt::format("cells of {} x {} pixels cannot be drawn", options.cell_width, options.cell_height),
         "ask for sides of 64 to 4096 pixels");
-  return Done{};
-}
-
-Status check(const Shot& shot) {
-  if (shot.character == nullptr || shot.clip == nullptr)
-    return Error{ErrorKind::internal, "", 0, 0, "", "a shot without character or clip", "report this"};
-  if (shot.clip->frames.empty())
-    return input_error(shot, fmt::format("the clip '{}' has no frames", shot.clip->name),
-                       "choose another clip");
-  if (!(shot.clip->fps > 0.0) || !std::isfinite(shot.clip->fps))
-    return input_error(shot, fmt::format("the clip '{}' has no frame rate", shot.clip->name),
-                       "choose another clip");
-  for (const Pose& pose : shot.clip->frames)
-    if (static_cast<int>(pose.size()) != shot.character->skeleton.size())
-      return input_error(shot,
-                         fmt::format("the clip '{}' is not of this character's skeleton", shot.clip->name),
-                         "choose a clip of the same character");
-  return Done{};
-}
-
-Status check_finite(const Shot& shot, const JointPaths& joints) {
-  for (std::size_t frame = 0; frame < joints.size(); ++frame)
-    for (const Vec3& joint : joints[frame])
-      if (!joint.allFinite() || joint.norm() > 1e6)
-        return input_error(
-            shot,
-            fmt::format("frame {} of the clip '{}' has a joint that is nowhere", frame, shot.clip->name),
-            "check the clip's values");
   return Done{};
 }
 
@@ -142,36 +110,24 @@ void draw_label(Picture& page, const Layout& layout, const Fonts& fonts, const B
   fonts.regular.draw(page, tag.x + pad, baseline, text, size, kPaper);
 }
 
-FrameGeometry cell_geometry(const Figure& figure, const Shot& shot, int frame) {
-  FrameGeometry geometry = figure.geometry(frame);
-  if (shows_arrow(shot, frame)) add_blow_arrow(geometry.solid, shot, frame);
-  return geometry;
-}
-
 }  // namespace
 
 Result<Picture> render_sheet(const Shot& shot, const SheetOptions& options) {
   if (const Status status = check(options); !status) return status.error();
-  if (const Status status = check(shot); !status) return status.error();
-  const Figure figure(shot, options.shapes);
-  JointPaths joints;
-  for (std::size_t frame = 0; frame < shot.clip->frames.size(); ++frame)
-    joints.push_back(figure.joints(static_cast<int>(frame)));
-  if (const Status status = check_finite(shot, joints); !status) return status.error();
+  auto studio = open_studio(shot, options.shapes, options.cell_width, options.cell_height);
+  if (!studio) return studio.error();
 
-  const std::vector<Moment> moments = choose_moments(*shot.clip, joints, options.cells);
+  const std::vector<Moment> moments = choose_moments(*shot.clip, studio->joints, options.cells);
   const Layout layout(options, static_cast<int>(moments.size()), shot.notes.size());
   if (std::max(layout.width(), layout.height()) > kLongestPageSide)
     return usage_error(fmt::format("a sheet of {} x {} pixels is too large", layout.width(), layout.height()),
                        "ask for fewer or smaller cells");
   const auto fonts = open_fonts();
   if (!fonts) return fonts.error();
-  auto painter = Painter::make(options.cell_width, options.cell_height, decode_textures(*shot.character));
-  if (!painter) return painter.error();
 
-  const Staging staging =
-      set_stage(figure, shot, joints, moments, static_cast<double>(options.cell_width) / options.cell_height,
-                static_cast<double>(layout.label_height()) / options.cell_height);
+  const Staging staging = set_stage(studio->figure, shot, studio->joints, moments,
+                                    static_cast<double>(options.cell_width) / options.cell_height,
+                                    static_cast<double>(layout.label_height()) / options.cell_height);
   Picture page = blank(layout.width(), layout.height(), kPage);
   draw_header(page, layout, *fonts, shot);
   draw_footer(page, layout, *fonts, shot, staging.follows());
@@ -179,8 +135,7 @@ Result<Picture> render_sheet(const Shot& shot, const SheetOptions& options) {
     const int frame = moments[i].frame;
     const Box cell = layout.cell(static_cast<int>(i));
     const double radius = layout.size(8);
-    paste(page, (*painter)->draw(cell_geometry(figure, shot, frame), staging.at(frame)), cell.x, cell.y,
-          radius);
+    paste(page, studio->painter->draw(studio->geometry(frame), staging.at(frame)), cell.x, cell.y, radius);
     outline(page, cell, radius, kCellBorder);
     draw_label(page, layout, *fonts, cell, frame / shot.clip->fps, moments[i].phase);
   }

@@ -122,12 +122,25 @@ std::vector<Vec3> floor_ways(const JointPaths& joints) {
 
 }  // namespace
 
+Quat telling_side(const Figure& figure, const Shot& shot, const JointPaths& joints) {
+  const Vec3 back = side_to_look_from(main_direction(shot, joints), figure.facing(0));
+  return look(std::atan2(back.x(), back.z()), kElevation);
+}
+
+Stage stage_about(const Camera& camera, const Eigen::AlignedBox3d& seen) {
+  Stage stage;
+  stage.camera = camera;
+  stage.floor_y = floor_height(seen.min().y());
+  stage.focus = {seen.center().x(), stage.floor_y, seen.center().z()};
+  stage.reach = 0.5 * flat(seen.sizes()).norm() + 1.0;
+  return stage;
+}
+
 Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
                   const std::vector<Moment>& moments, double aspect, double top) {
   Camera camera;
   camera.aspect = aspect;
-  const Vec3 back = side_to_look_from(main_direction(shot, joints), figure.facing(0));
-  camera.world_from_camera = look(std::atan2(back.x(), back.z()), kElevation);
+  camera.world_from_camera = telling_side(figure, shot, joints);
 
   const auto frame_for = [&](const std::vector<Vec3>& shifts, Eigen::AlignedBox3d& all) {
     Framing framing(camera, {kMargin, kMargin, kMargin, std::max(kMargin, 2.0 * top)});
@@ -148,12 +161,7 @@ Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& join
   Staging staging;
   const bool follow = distance(still, all) > kFollow * distance(moving, following);
   if (follow) staging.shifts = ways;
-  const Eigen::AlignedBox3d& box = follow ? following : all;
-  Stage& stage = staging.stage;
-  stage.camera = follow ? moving : still;
-  stage.floor_y = floor_height(all.min().y());
-  stage.focus = {box.center().x(), stage.floor_y, box.center().z()};
-  stage.reach = 0.5 * flat(box.sizes()).norm() + 1.0;
+  staging.stage = follow ? stage_about(moving, following) : stage_about(still, all);
   return staging;
 }
 

@@ -1,6 +1,7 @@
 // Where the camera stands and where the floor lies.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "render/figure.h"
@@ -20,6 +21,10 @@ struct Staging {
   bool follows() const { return !shifts.empty(); }
   Stage at(int frame) const;
 };
+
+/// The way the camera looks, and a stage whose camera stands where `framing` put it; `seen`: what it holds.
+Quat telling_side(const Figure& figure, const Shot& shot, const JointPaths& joints);
+Stage stage_about(const Camera& camera, const Eigen::AlignedBox3d& seen);
 
 /// One view for all moments: the camera looks across the blow (or, without one, across the way), turned
 /// towards the figure's front, and holds all joints of all frames and all that the moments show. It stands

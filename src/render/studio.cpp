@@ -1,0 +1,65 @@
+#include "render/studio.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "render/page.h"
+
+namespace ukemi {
+namespace {
+
+Error input_error(const Shot& shot, std::string what, std::string fix) {
+  return {ErrorKind::input, shot.character ? shot.character->path.string() : "", 0, 0, "", std::move(what),
+          std::move(fix)};
+}
+
+Status check(const Shot& shot) {
+  if (shot.character == nullptr || shot.clip == nullptr)
+    return Error{ErrorKind::internal, "", 0, 0, "", "a shot without character or clip", "report this"};
+  if (shot.clip->frames.empty())
+    return input_error(shot, fmt::format("the clip '{}' has no frames", shot.clip->name),
+                       "choose another clip");
+  if (!(shot.clip->fps > 0.0) || !std::isfinite(shot.clip->fps))
+    return input_error(shot, fmt::format("the clip '{}' has no frame rate", shot.clip->name),
+                       "choose another clip");
+  for (const Pose& pose : shot.clip->frames)
+    if (static_cast<int>(pose.size()) != shot.character->skeleton.size())
+      return input_error(shot,
+                         fmt::format("the clip '{}' is not of this character's skeleton", shot.clip->name),
+                         "choose a clip of the same character");
+  return Done{};
+}
+
+Status check_finite(const Shot& shot, const JointPaths& joints) {
+  for (std::size_t frame = 0; frame < joints.size(); ++frame)
+    for (const Vec3& joint : joints[frame])
+      if (!joint.allFinite() || joint.norm() > 1e6)
+        return input_error(
+            shot,
+            fmt::format("frame {} of the clip '{}' has a joint that is nowhere", frame, shot.clip->name),
+            "check the clip's values");
+  return Done{};
+}
+
+}  // namespace
+
+FrameGeometry Studio::geometry(int frame) const {
+  FrameGeometry result = figure.geometry(frame);
+  if (shows_arrow(shot, frame)) add_blow_arrow(result.solid, shot, frame);
+  return result;
+}
+
+Result<Studio> open_studio(const Shot& shot, bool shapes, int width, int height) {
+  if (const Status status = check(shot); !status) return status.error();
+  Studio studio{shot, Figure(shot, shapes), {}, nullptr};
+  for (std::size_t frame = 0; frame < shot.clip->frames.size(); ++frame)
+    studio.joints.push_back(studio.figure.joints(static_cast<int>(frame)));
+  if (const Status status = check_finite(shot, studio.joints); !status) return status.error();
+  auto painter = Painter::make(width, height, decode_textures(*shot.character));
+  if (!painter) return painter.error();
+  studio.painter = std::move(*painter);
+  return studio;
+}
+
+}  // namespace ukemi

@@ -1,0 +1,25 @@
+// A shot made ready to be drawn.
+#pragma once
+
+#include <memory>
+
+#include "render/painter.h"
+#include "render/staging.h"
+
+namespace ukemi {
+
+struct Studio {
+  const Shot& shot;
+  Figure figure;
+  JointPaths joints;
+  std::unique_ptr<Painter> painter;
+
+  /// All that a frame shows: figure, props, and the arrow of the blow where it is time for it.
+  FrameGeometry geometry(int frame) const;
+};
+
+/// Pictures of the given size. Contract: the shot outlives the studio. Errors: input (a clip without frames,
+/// of another skeleton, with a joint that is nowhere); output when no off-screen context can be made.
+Result<Studio> open_studio(const Shot& shot, bool shapes, int width, int height);
+
+}  // namespace ukemi

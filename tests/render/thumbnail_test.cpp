@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "render/boxy.h"
+#include "render/moving.h"
+#include "render/render.h"
+
+namespace ukemi {
+namespace {
+
+struct Scene {
+  Character character = boxy_character();
+  Clip clip = boxy_fall(character, 46);
+  std::vector<Prop> props = boxy_ball(clip);
+  Shot shot;
+
+  Scene() {
+    shot.character = &character;
+    shot.clip = &clip;
+    shot.props = &props;
+    shot.impact_point = {0.0, 1.30, 0.11};
+    shot.impact_direction = {0.0, 0.0, -1.0};
+  }
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+};
+
+int differing_pixels(const Picture& a, const Picture& b) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+    int most = 0;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      most = std::max(most, std::abs(a.rgba[i + channel] - b.rgba[i + channel]));
+    count += most > 24;
+  }
+  return count;
+}
+
+std::uint32_t little_endian(const std::vector<std::uint8_t>& bytes, std::size_t at, int count) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < count; ++i) value |= static_cast<std::uint32_t>(bytes[at + i]) << (8 * i);
+  return value;
+}
+
+TEST(Thumbnail, has_the_size_asked_for_and_shows_start_motion_and_blow) {
+  Scene scene;
+  const auto whole = render_thumbnail(scene.shot, {160, 120});
+  ASSERT_TRUE(whole) << whole.error().message();
+  EXPECT_EQ(whole->width, 160);
+  EXPECT_EQ(whole->height, 120);
+  scene.shot.impact_direction.setZero();
+  scene.clip.frames.resize(1);
+  const auto still = render_thumbnail(scene.shot, {160, 120});
+  ASSERT_TRUE(still);
+  EXPECT_GT(differing_pixels(*whole, *still), 300);
+}
+
+TEST(Thumbnail, is_dark_in_the_dark_theme) {
+  const Scene scene;
+  const auto light = render_thumbnail(scene.shot, {96, 72, ThemeKind::light});
+  const auto dark = render_thumbnail(scene.shot, {96, 72, ThemeKind::dark});
+  ASSERT_TRUE(light && dark);
+  EXPECT_GT(light->rgba[0], 200);
+  EXPECT_LT(dark->rgba[0], 80);
+}
+
+TEST(WebP, of_a_picture_is_small_and_has_its_size) {
+  const Scene scene;
+  const auto picture = render_thumbnail(scene.shot, {160, 120});
+  ASSERT_TRUE(picture);
+  const auto bytes = encode_webp(*picture, 80.0);
+  ASSERT_TRUE(bytes) << bytes.error().message();
+  EXPECT_EQ(std::string(bytes->begin(), bytes->begin() + 4), "RIFF");
+  EXPECT_EQ(std::string(bytes->begin() + 8, bytes->begin() + 16), "WEBPVP8 ");
+  EXPECT_EQ(little_endian(*bytes, 26, 2) & 0x3fff, 160u);
+  EXPECT_EQ(little_endian(*bytes, 28, 2) & 0x3fff, 120u);
+  EXPECT_LT(bytes->size(), 6000u);
+}
+
+/// Durations of an animation's frames, milliseconds.
+std::vector<std::uint32_t> durations(const std::vector<std::uint8_t>& webp) {
+  std::vector<std::uint32_t> found;
+  for (std::size_t at = 12; at + 8 <= webp.size();) {
+    const std::string kind(webp.begin() + at, webp.begin() + at + 4);
+    if (kind == "ANMF") found.push_back(little_endian(webp, at + 8 + 12, 3));
+    const std::uint32_t size = little_endian(webp, at + 4, 4);
+    at += 8 + size + (size & 1);
+  }
+  return found;
+}
+
+TEST(WebP, animation_holds_every_frame_for_its_time) {
+  AnimationEncoder encoder(32, 24, 30.0, 80.0);
+  Picture picture{32, 24, std::vector<std::uint8_t>(std::size_t{4} * 32 * 24, 255)};
+  for (int frame = 0; frame < 6; ++frame) {
+    for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
+      picture.rgba[i] = static_cast<std::uint8_t>(40 * frame);
+    ASSERT_TRUE(encoder.add(picture));
+  }
+  const auto bytes = encoder.finish();
+  ASSERT_TRUE(bytes) << bytes.error().message();
+  EXPECT_EQ(durations(*bytes), (std::vector<std::uint32_t>{33, 34, 33, 33, 34, 33}));
+}
+
+TEST(WebP, animation_without_a_frame_is_an_error) {
+  AnimationEncoder encoder(32, 24, 30.0, 80.0);
+  EXPECT_FALSE(encoder.finish());
+}
+
+}  // namespace
+}  // namespace ukemi
