@@ -1,5 +1,5 @@
-// FBX, DAE and whatever else assimp reads: its scene is written as a glTF document and that is read like any
-// other.
+#include "load/assimp_scene.h"
+
 #include <assimp/BaseImporter.h>
 #include <assimp/config.h>
 #include <assimp/material.h>
@@ -37,13 +37,6 @@ constexpr int kElementBuffer = 34963;
 // Keys nearer than this are one key: files hold some that are equal as float seconds.
 constexpr double kMinKeyDistance_s = 1e-4;
 constexpr std::size_t kMaxNodes = 100'000;
-
-/// A document written from a scene, and what the file says of its unit and axes.
-struct Converted {
-  load::GltfContainer container;
-  std::optional<double> metres_per_unit;
-  std::optional<Quat> yup_from_file;
-};
 
 std::string name_of(const aiString& name) { return load::utf8_name({name.data, name.length}); }
 
@@ -157,13 +150,13 @@ class SceneConverter {
   SceneConverter(const aiScene& scene, const std::filesystem::path& path, Diagnostics& diagnostics)
       : scene_(scene), path_(path), diagnostics_(diagnostics) {}
 
-  Converted convert() {
+  load::SceneDocument convert() {
     write_nodes();
     write_materials();
     for (std::size_t i = 0; i < nodes_.size(); ++i) write_mesh(static_cast<int>(i));
     write_animations();
 
-    Converted result;
+    load::SceneDocument result;
     Json document{{"asset", {{"version", "2.0"}, {"generator", "ukemi"}}}, {"scene", 0}};
     document["scenes"] = {{{"nodes", {0}}}};
     document["nodes"] = std::move(node_json_);
@@ -519,7 +512,7 @@ class SceneConverter {
 
   /// FBX states them in its metadata and assimp leaves the coordinates as they are; for DAE assimp has put
   /// them into the root node's matrix.
-  void read_axes(Converted& result) {
+  void read_axes(load::SceneDocument& result) {
     if (load::same_word(path_.extension().string(), ".dae")) {
       result.metres_per_unit = 1.0;
       result.yup_from_file = Quat::Identity();
@@ -568,17 +561,20 @@ void keep_only(Assimp::Importer& importer, const Assimp::BaseImporter* kept) {
   }
 }
 
-/// The only call into assimp: bytes to a document.
-Result<Converted> convert_with_assimp(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
-                                      Diagnostics& diagnostics) {
+}  // namespace
+
+namespace load {
+
+Result<SceneDocument> document_from_scene(std::span<const std::uint8_t> bytes,
+                                          const std::filesystem::path& path, Diagnostics& diagnostics) {
   const std::string extension = path.extension().string();
-  if (extension.size() < 2) return load::input_error(path, 0, "has no extension", kKnownExtensions);
+  if (extension.size() < 2) return input_error(path, 0, "has no extension", kKnownExtensions);
   const std::string hint = extension.substr(1);
   Assimp::Importer importer;
   const Assimp::BaseImporter* reader = importer.GetImporter(hint.c_str());
   if (reader == nullptr)
-    return load::input_error(path, 0, fmt::format("extension {} is not known", load::quoted(extension)),
-                             kKnownExtensions);
+    return input_error(path, 0, fmt::format("extension {} is not known", load::quoted(extension)),
+                       kKnownExtensions);
   keep_only(importer, reader);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
@@ -586,30 +582,10 @@ Result<Converted> convert_with_assimp(std::span<const std::uint8_t> bytes, const
   const aiScene* scene =
       importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, hint.c_str());
   if (scene == nullptr || scene->mRootNode == nullptr)
-    return load::input_error(path, 0, fmt::format("cannot be read: {}", importer.GetErrorString()),
-                             "export the file again, or export it as .glb");
+    return input_error(path, 0, fmt::format("cannot be read: {}", importer.GetErrorString()),
+                       "export the file again, or export it as .glb");
   return SceneConverter(*scene, path, diagnostics).convert();
 }
 
-}  // namespace
-
-Result<Character> read_with_assimp(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
-                                   Diagnostics& diagnostics) {
-  try {
-    Result<Converted> converted = convert_with_assimp(bytes, path, diagnostics);
-    if (!converted) return converted.error();
-    Result<Character> character = load::read_container(std::move(converted->container), path, diagnostics);
-    if (!character) return character;
-    character->format = SourceFormat::assimp;
-    character->metres_per_unit = converted->metres_per_unit;
-    character->yup_from_file = converted->yup_from_file;
-    return character;
-  } catch (const load::Refusal& refusal) {
-    return load::input_error(path, 0, refusal.message, refusal.fix);
-  } catch (const std::exception& exception) {
-    return load::input_error(path, 0, fmt::format("cannot be read: {}", exception.what()),
-                             "export the file again, or export it as .glb");
-  }
-}
-
+}  // namespace load
 }  // namespace ukemi
