@@ -261,22 +261,29 @@ void Tone::capture() {
   parent_from_child_ = orientation(model_, joint_.parent).conjugate() * orientation(model_, joint_.child);
 }
 
-// A spring k and damper c over a step h as a motor: CFM = 1 / (h k + c), target speed = -k e CFM.
+// A spring k and damper c over a step h as a motor: CFM = 1 / (h k + c), target speed = -k e CFM. A greater
+// CFM keeps the torque that this asks for below its cap; a row with a finite FMax would do so too, but costs
+// ODE's solver many times as much as one without.
 void Tone::prepare(double h, double share) {
   if (motor_ == nullptr) return;
   dJointSetAMotorNumAxes(motor_, share > 0.0 ? 3 : 0);
   if (share <= 0.0) return;
-  const Quat frame = world_from_joint(model_, joint_);
+  const Mat3 axes = world_from_joint(model_, joint_).toRotationMatrix();
   const Quat held = orientation(model_, joint_.parent) * parent_from_child_;
   const Vec3 error = log_rotation(orientation(model_, joint_.child) * held.conjugate());
-  const double stiffness = share * torque_ / kFullTorqueAt;
+  const Vec3 omega = relative_omega(model_, joint_);
+  const double cap = share * torque_;
+  const double stiffness = cap / kFullTorqueAt;
   const double cfm = 1.0 / (stiffness * (h + kToneDamping_s));
-  const std::array<Vec3, 3> axes = {frame * Vec3::UnitX(), frame * Vec3::UnitY(), frame * Vec3::UnitZ()};
-  for (std::size_t i = 0; i < 3; ++i) {
-    set_axis(motor_, i, axes[i]);
-    dJointSetAMotorParam(motor_, suffixed(dParamVel, i), -stiffness * error.dot(axes[i]) * cfm);
-    dJointSetAMotorParam(motor_, suffixed(dParamFMax, i), share * torque_);
-    dJointSetAMotorParam(motor_, suffixed(dParamCFM, i), cfm);
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 axis = axes.col(i);
+    const auto row = static_cast<std::size_t>(i);
+    const double target = -stiffness * error.dot(axis) * cfm;
+    set_axis(motor_, row, axis);
+    dJointSetAMotorParam(motor_, suffixed(dParamVel, row), target);
+    dJointSetAMotorParam(motor_, suffixed(dParamFMax, row), dInfinity);
+    dJointSetAMotorParam(motor_, suffixed(dParamCFM, row),
+                         std::max(cfm, std::abs(target - omega.dot(axis)) / cap));
   }
 }
 

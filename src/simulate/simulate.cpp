@@ -132,7 +132,9 @@ class Simulation {
   bool try_step(int ticks);
   bool sinks(const Contacts& next) const;
   void take_step(double h);
-  void accept(int ticks, const std::vector<double>& excesses, double separation, Contacts next);
+  double project(double worst_excess);
+  void accept(int ticks, const std::vector<double>& excesses, double projected, double separation,
+              Contacts next);
   std::vector<double> joint_excesses() const;
   std::vector<double> judged_excesses() const;
   double worst_separation() const;
@@ -296,20 +298,28 @@ bool Simulation::try_step(int ticks) {
   std::vector<double> excesses = joint_excesses();
   const double separation = worst_separation();
   const bool can_halve = stepping_.adaptive && ticks > 1;
-  if (can_halve &&
-      (separation > kWorstSeparation || *std::max_element(excesses.begin(), excesses.end()) > kWorstExcess)) {
+  const double worst = *std::max_element(excesses.begin(), excesses.end());
+  if (can_halve && (separation > kWorstSeparation || worst > kWorstExcess)) {
     restore();
     return false;
   }
   if (judged_ != nullptr) excesses = judged_excesses();
-  if (projecting()) model_.project();
+  const double projected = project(worst);
   Contacts next = collision_.find();
   if (can_halve && sinks(next)) {
     restore();
     return false;
   }
-  accept(ticks, excesses, separation, std::move(next));
+  accept(ticks, excesses, projected, separation, std::move(next));
   return true;
+}
+
+/// Worst excess that projection leaves.
+double Simulation::project(double worst_excess) {
+  if (!projecting() || worst_excess <= 0.0) return 0.0;
+  model_.project();
+  const std::vector<double> left = joint_excesses();
+  return *std::max_element(left.begin(), left.end());
 }
 
 void Simulation::advance(int ticks) {
@@ -319,14 +329,12 @@ void Simulation::advance(int ticks) {
   advance(ticks / 2);
 }
 
-void Simulation::accept(int ticks, const std::vector<double>& excesses, double separation, Contacts next) {
+void Simulation::accept(int ticks, const std::vector<double>& excesses, double projected, double separation,
+                        Contacts next) {
   const double h = stepping_.tick_s * ticks;
   const double work = stage_.work(time_s(), h);
   ticks_ += ticks;
   contacts_ = std::move(next);
-  double projected = 0.0;
-  if (projecting())
-    for (const double value : joint_excesses()) projected = std::max(projected, value);
   recorder_.excess_of_step(excesses, projected);
   recorder_.step(time_s(), h, contacts_, stage_.prop_energy(), work, separation);
   calm_steps_ = worst_joint_speed() < kCalmSpeed ? calm_steps_ + 1 : 0;
