@@ -11,9 +11,11 @@ namespace {
 template <typename Target>
 std::string help_of(const SettingOf<Target>& setting, const Target& target) {
   const std::vector<std::string> values = setting.get(target);
-  const std::string initial = values.empty() || values.front().empty() ? setting.unset : values.front();
   std::vector<std::string> notes;
-  if (!initial.empty()) notes.push_back("default " + initial);
+  if (!values.empty())
+    notes.push_back("default " + values.front());
+  else if (!setting.unset.empty())
+    notes.push_back("default: " + setting.unset);
   if (setting.kind == SettingOf<Target>::Kind::number) notes.push_back(setting.range.text());
   return notes.empty() ? setting.help : fmt::format("{} [{}]", setting.help, fmt::join(notes, "; "));
 }
