@@ -11,6 +11,7 @@
 
 #include "bake/bake.h"
 #include "bake/impact.h"
+#include "bake/map_file.h"
 #include "bake/nearest.h"
 
 namespace ukemi {
@@ -122,23 +123,40 @@ Status check_scene_word(const std::string& text) {
   return scene ? Status(Done{}) : Status(scene.error());
 }
 
+Status add_to_map(HumanoidOptions& target, const std::string& segment, const std::string& node) {
+  if (target.map.emplace(segment, node).second) return Done{};
+  return usage(fmt::format("'{}' gets two nodes", segment), "give each segment one node");
+}
+
+bool names_map_file(std::string_view text) {
+  return text.find('=') == text.npos && (text.ends_with(".toml") || text.ends_with(".json"));
+}
+
 Status take_map(HumanoidOptions& target, const std::string& text) {
+  if (names_map_file(text)) {
+    const auto map = read_map(text);
+    if (!map) return map.error();
+    for (const auto& [segment, node] : *map)
+      if (const Status added = add_to_map(target, segment, node); !added) return added.error();
+    return Done{};
+  }
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size())
-    return usage(fmt::format("'{}' is not SEGMENT=NODE", text), "write head=NodeName or head=#12");
+    return usage(fmt::format("'{}' is not SEGMENT=NODE, and no .toml or .json file", text),
+                 "write head=NodeName or head=#12");
   const std::string segment = text.substr(0, equals);
   if (const Status known = check_segment(segment); !known) return known.error();
-  if (!target.map.emplace(segment, text.substr(equals + 1)).second)
-    return usage(fmt::format("'{}' gets two nodes", segment), "give each segment one node");
-  return Done{};
+  return add_to_map(target, segment, text.substr(equals + 1));
 }
 
 HumanoidSetting map_setting() {
   HumanoidSetting setting;
   setting.kind = HumanoidSetting::Kind::list;
   setting.name = "map";
-  setting.value = "SEGMENT=NODE";
-  setting.help = "node that moves a segment, by its name or #INDEX, where the program finds another or none";
+  setting.value = "SEGMENT=NODE|FILE";
+  setting.help =
+      "node that moves a segment, by its name or #INDEX, where the program finds another or none; a .toml or "
+      ".json file may name many, like the one that inspect --json prints";
   setting.set = take_map;
   setting.get = [](const HumanoidOptions& target) {
     std::vector<std::string> entries;

@@ -62,6 +62,9 @@ class GltfReader {
       : path_(path), diagnostics_(diagnostics) {}
 
   Character read(load::GltfContainer container) {
+    if (container.bytes_after_end > 0)
+      diagnostics_.warn(path_.string(), fmt::format("has {} bytes after its announced end; they are left out",
+                                                    container.bytes_after_end));
     container.document.folder = path_.parent_path();
     const load::JsonDocument document(text_of(container.document));
     const JsonView root = document.root();

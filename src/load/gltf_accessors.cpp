@@ -127,7 +127,7 @@ void Accessors::read_view(const JsonView& json, const std::vector<std::vector<st
   const auto meshopt = extensions ? extensions->find("EXT_meshopt_compression") : std::nullopt;
   if (meshopt)
     read_compressed_view(*meshopt, view);
-  else
+  else if (!buffers[view.buffer].empty())  // one without data is refused where somebody reads it
     check_view_range(json, view.buffer, view.offset, view.length);
   views_.push_back(std::move(view));
 }
@@ -188,6 +188,9 @@ std::vector<std::uint8_t> Accessors::decompressed(const View& view) const {
 
 std::span<const std::uint8_t> Accessors::view_bytes(int index) {
   const View& view = views_[index];
+  if (!view.compressed && buffers_[view.buffer].empty())
+    throw Refusal(fmt::format("{} lies in buffers[{}], which has no data", view.place, view.buffer),
+                  "export the file again");
   if (!view.compressed) return std::span(buffers_[view.buffer]).subspan(view.offset, view.length);
   auto found = decompressed_.find(index);
   if (found == decompressed_.end()) found = decompressed_.emplace(index, decompressed(view)).first;

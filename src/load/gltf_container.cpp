@@ -33,7 +33,7 @@ void check_header(std::span<const std::uint8_t> bytes) {
   if (word_at(bytes, 4) != 2)
     throw Refusal(fmt::format("GLB header: version {}, but only 2 is known", word_at(bytes, 4)),
                   "export it as glTF 2.0");
-  if (word_at(bytes, 8) != bytes.size())
+  if (word_at(bytes, 8) < kHeaderBytes || word_at(bytes, 8) > bytes.size())
     throw Refusal(
         fmt::format("GLB header: announces {} bytes, the file has {}", word_at(bytes, 8), bytes.size()),
         kFix);
@@ -42,6 +42,8 @@ void check_header(std::span<const std::uint8_t> bytes) {
 GltfContainer split_glb(std::span<const std::uint8_t> bytes) {
   check_header(bytes);
   GltfContainer container;
+  container.bytes_after_end = bytes.size() - word_at(bytes, 8);
+  bytes = bytes.first(word_at(bytes, 8));
   container.document.is_glb = true;
   std::size_t offset = kHeaderBytes;
   for (int chunk = 0; offset < bytes.size(); ++chunk) {

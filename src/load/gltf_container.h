@@ -21,6 +21,7 @@ struct GltfContainer {
   GltfDocument document;
   bool has_binary = false;
   std::vector<std::uint8_t> binary;  // the BIN chunk
+  std::size_t bytes_after_end = 0;   // of a GLB that is longer than it says
 };
 /// Splits a .glb into its chunks (checked lengths) or takes the bytes as JSON. Throws Refusal.
 GltfContainer split_container(std::span<const std::uint8_t> bytes);

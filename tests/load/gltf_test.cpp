@@ -419,12 +419,37 @@ TEST(Gltf, RefusesBrokenGlbHeadersAndChunks) {
   };
   EXPECT_NE(with_word(0, 0).find("is no glTF"), std::string::npos);
   EXPECT_EQ(with_word(4, 1), "GLB header: version 1, but only 2 is known");
-  EXPECT_EQ(with_word(8, 100), fmt::format("GLB header: announces 100 bytes, the file has {}", good.size()));
+  EXPECT_EQ(with_word(8, 100000),
+            fmt::format("GLB header: announces 100000 bytes, the file has {}", good.size()));
+  EXPECT_EQ(with_word(8, 11), fmt::format("GLB header: announces 11 bytes, the file has {}", good.size()));
+  EXPECT_NE(with_word(8, 100).find("GLB chunk 0 at byte 12: announces"), std::string::npos);
   EXPECT_EQ(with_word(12, 0xFFFFFFFF),
             fmt::format("GLB chunk 0 at byte 12: announces 4294967295 bytes, {} are left", good.size() - 20));
   EXPECT_EQ(with_word(16, 0x004E4942), "GLB: the first chunk is not JSON");
   for (std::size_t length = 0; length < good.size(); ++length)
     ASSERT_FALSE(read(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(length)))) << length;
+}
+
+TEST(Gltf, BytesAfterTheEndOfAGlbAreLeftOutWithAWarning) {
+  Bytes bytes = skinned_square().glb();
+  const auto whole = read(bytes);
+  bytes.insert(bytes.end(), {1, 2, 3});
+  Diagnostics diagnostics;
+  const auto longer = read_gltf(bytes, "a.glb", diagnostics);
+  ASSERT_TRUE(longer);
+  EXPECT_EQ(longer->document.json, whole->document.json);
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_EQ(diagnostics.warnings()[0].what, "has 3 bytes after its announced end; they are left out");
+}
+
+TEST(Gltf, ABufferWithoutDataIsRefusedOnlyWhereItIsRead) {
+  const std::string unread = R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":12}],
+    "bufferViews":[{"buffer":0,"byteLength":12}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":1,"type":"VEC3"}],"nodes":[{"mesh":0}])";
+  EXPECT_TRUE(read(unread + R"(,"meshes":[{"primitives":[{"attributes":{},"mode":4}]}]})"));
+  EXPECT_EQ(
+      read(unread + R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":4}]}]})").error().what,
+      "bufferViews[0] lies in buffers[0], which has no data");
 }
 
 TEST(Gltf, ChangedBytesNeverCrash) {
