@@ -19,11 +19,12 @@ struct Command {
   int (*run)(const Arguments&);
 };
 
-constexpr std::array<Command, 7> kCommands = {{
+constexpr std::array<Command, 8> kCommands = {{
     {"bake", "CHARACTER", "one hit reaction of a character: clip, contact sheet, report", bake_command},
     {"inspect", "FILE", "what is in a file: skeleton, humanoid map, units, clips, range of motion",
      inspect_command},
     {"render", "FILE", "contact sheet of any clip in a file", render_command},
+    {"review", "DIR", "the web page to judge a folder of reactions by", review_command},
     {"compare", "CHARACTER", "the same random hits with every method of joint restriction", compare_command},
     {"diff", "A B", "compares two clips joint by joint", diff_command},
     {"rom", "", "range of motion of the joints, and a clip's path through it, as picture or text",

@@ -1,0 +1,36 @@
+// The reactions that a review page shows, as a batch's manifest or the files of a folder tell them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace ukemi {
+
+/// One reaction. Paths are relative to the reviewed folder; empty where there is none.
+/// Contract: settings_json and figures_json are JSON objects; what does not apply is null or missing.
+struct ReviewSource {
+  std::string character;
+  std::string name;
+  std::string status = "done";  // done, failed, rejected
+  std::string error;            // of a reaction that failed
+  std::string digest;           // of what was baked; "" where nobody told
+  std::filesystem::path clip;   // that is played: the first .glb, else .gltf, else .bvh of the outputs
+  std::filesystem::path report;
+  std::filesystem::path sheet;
+  std::vector<std::string> outputs;
+  std::string settings_json = "{}";
+  std::string figures_json = "{}";
+};
+
+struct ReviewSources {
+  std::string recipe;  // name of the recipe; "" without a manifest
+  std::vector<ReviewSource> reactions;
+};
+
+/// Errors: see write_review.
+Result<ReviewSources> review_sources(const std::filesystem::path& folder, Diagnostics& diagnostics);
+
+}  // namespace ukemi

@@ -1,0 +1,61 @@
+#include "bake/review.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/options.h"
+
+namespace ukemi {
+namespace {
+
+constexpr const char* kAboutThePage =
+    "\nDIR/index.html opens from disk in any browser, and from any web server; it needs DIR/review/ beside\n"
+    "it and the clips only for its links. Verdicts stay in the browser; Export writes them to a JSON file:\n"
+    "the page's help tells its form and all keys.\n";
+
+std::string counted(int count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// A line that replaces itself, where a person looks on.
+void print_progress(int done, int total) {
+  std::fputs(fmt::format("\rreview: {} of {}{}", done, total, done == total ? "\n" : "").c_str(), stderr);
+}
+
+}  // namespace
+
+int review_command(const Arguments& arguments) {
+  std::string folder;
+  ReviewSettings settings;
+  double threads = settings.threads;
+  bool quiet = false;
+  Options options("review", "makes the web page to judge reactions by");
+  options.argument("DIR", folder, "a folder of baked clips and their reports");
+  options.number("-j,--jobs", "N", threads, Range{1.0, 256.0}, "clips read at the same time");
+  options.flag("--quiet", quiet, "nothing on stdout");
+  const auto outcome = options.parse(arguments);
+  if (!outcome) return print_error(outcome.error());
+  if (*outcome == Options::Outcome::help) return print_result(options.help() + kAboutThePage, 0);
+  settings.threads = static_cast<int>(std::floor(threads));
+
+  Diagnostics diagnostics;
+  const bool watched = !quiet && isatty(STDERR_FILENO) == 1;
+  const auto review = write_review(folder, settings, diagnostics, [watched](int done, int total) {
+    if (watched) print_progress(done, total);
+  });
+  print_warnings(diagnostics);
+  if (!review) return print_error(review.error());
+  if (quiet) return 0;
+  return print_result(fmt::format("{}, {}, {}\nwrote {}\n", counted(review->reactions, "reaction"),
+                                  counted(review->clips, "clip"), counted(review->characters, "character"),
+                                  review->page.string()),
+                      0);
+}
+
+}  // namespace ukemi
