@@ -31,7 +31,7 @@ constexpr std::size_t kLongestReadableName = 60;
 /// What became of one source.
 struct Made {
   std::optional<ReviewClip> clip;  // without its long texts, which are written
-  std::string clip_file, thumbnail_file, character_file;
+  std::string clip_file, character_file, thumbnail_light, thumbnail_dark;
   std::string error;
   Diagnostics diagnostics;
 };
@@ -129,6 +129,10 @@ Result<std::string> read_asset(const std::string& name) {
   return std::string(bytes->begin(), bytes->end());
 }
 
+std::string_view text_of(const std::vector<std::uint8_t>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 /// Writes a clip's files. Errors: output.
 Status write_clip(const ReviewSource& source, PageFolder& page, Made& made) {
   ReviewClip& clip = *made.clip;
@@ -137,9 +141,6 @@ Status write_clip(const ReviewSource& source, PageFolder& page, Made& made) {
       fmt::format("{{\"character\":\"{}\",{}", made.character_file, clip.clip_json.substr(1));
   const std::string stem = readable(source.character + "-" + source.name);
   made.clip_file = fmt::format("{}-{}", stem, content_hash(json));
-  made.thumbnail_file = fmt::format(
-      "thumbnails/{}-{}.png", stem,
-      content_hash({reinterpret_cast<const char*>(clip.thumbnail.data()), clip.thumbnail.size()}));
   if (Status status = page.write("characters/" + made.character_file + ".js",
                                  script("character", made.character_file, clip.character_json));
       !status)
@@ -147,10 +148,14 @@ Status write_clip(const ReviewSource& source, PageFolder& page, Made& made) {
   if (Status status = page.write("clips/" + made.clip_file + ".js", script("clip", made.clip_file, json));
       !status)
     return status;
-  if (Status status = page.write(made.thumbnail_file, clip.thumbnail); !status) return status;
+  made.thumbnail_light = "thumbnails/" + stem + "-" + content_hash(text_of(clip.thumbnail_light)) + ".webp";
+  made.thumbnail_dark = "thumbnails/" + stem + "-" + content_hash(text_of(clip.thumbnail_dark)) + ".webp";
+  if (Status status = page.write(made.thumbnail_light, clip.thumbnail_light); !status) return status;
+  if (Status status = page.write(made.thumbnail_dark, clip.thumbnail_dark); !status) return status;
   clip.clip_json.clear();
   clip.character_json.clear();
-  clip.thumbnail.clear();
+  clip.thumbnail_light.clear();
+  clip.thumbnail_dark.clear();
   return Done{};
 }
 
@@ -224,7 +229,8 @@ Json reaction_json(const ReviewSource& source, const Made& made) {
   json["sheet"] = link(source.sheet);
   json["clip"] = text_or_null(made.clip_file);
   json["mesh"] = text_or_null(made.character_file);
-  json["thumbnail"] = text_or_null(made.thumbnail_file);
+  json["thumbnail"] = text_or_null(made.thumbnail_light);
+  json["thumbnail_dark"] = text_or_null(made.thumbnail_dark);
   return json;
 }
 

@@ -272,11 +272,15 @@ Vec3 middle_of(const BodyPose& body, Segment segment) {
   return origin + kLeafShare * (origin - body[index(parent_of(segment))].translation);
 }
 
-/// Where the blow ends, outside the body, and the way it goes.
-Json impact_json(const Told& told, const BodyPose& first, double height_m) {
+/// Where the blow ends, about at the skin; meaningless where nothing is known of it.
+Vec3 impact_point(const Told& told, const BodyPose& first, double height_m) {
+  if (!told.hit || !told.direction) return Vec3::Zero();
+  return middle_of(first, *told.hit) - kSurfaceShare * height_m * *told.direction;
+}
+
+Json impact_json(const Told& told, const Vec3& point) {
   if (!told.hit || !told.direction) return nullptr;
   const Vec3& d = *told.direction;
-  const Vec3 point = middle_of(first, *told.hit) - kSurfaceShare * height_m * d;
   return {{"point", {point.x(), point.y(), point.z()}}, {"direction", {d.x(), d.y(), d.z()}}};
 }
 
@@ -314,13 +318,15 @@ Result<ReviewClip> review_clip(const fs::path& folder, const ReviewSource& sourc
   json["clip"] = sampled.name;
   json["duration_s"] = result.duration_s;
   json["fps"] = sampled.fps;
-  json["floor_m"] = told.floor_m.value_or(floor_of(*character, *humanoid, sampled.frames));
+  const double floor_m = told.floor_m ? *told.floor_m : floor_of(*character, *humanoid, sampled.frames);
+  json["floor_m"] = floor_m;
   json["root"] = humanoid->root;
   json["marks"] = marks_json(told, result.duration_s);
   const BodyPose first = segments_of(character->skeleton, *humanoid, sampled.frames.front());
+  const Vec3 point = impact_point(told, first, humanoid->height_m);
   const Vec3 forward = first[index(Segment::pelvis)].rotation * Vec3::UnitX();
   json["forward"] = {forward.x(), forward.y(), forward.z()};
-  json["impact"] = impact_json(told, first, humanoid->height_m);
+  json["impact"] = impact_json(told, point);
   json["tracks"] = Json::array();
   for (const Track& track : animation.tracks)
     json["tracks"].push_back(track_json(track, sampled, animation.start_s));
@@ -329,10 +335,13 @@ Result<ReviewClip> review_clip(const fs::path& folder, const ReviewSource& sourc
                range_of(told, source.clip.string(), diagnostics), told.widened, result.clip_excess_max_deg);
   result.clip_json = dumped(json);
   result.character_json = review_mesh_json(*character, *humanoid);
-  auto thumbnail = review_thumbnail(*character, *humanoid, sampled, told.direction.value_or(Vec3::Zero()),
-                                    json["floor_m"].get<double>());
-  if (!thumbnail) return thumbnail.error();
-  result.thumbnail = std::move(*thumbnail);
+  const ReviewedClip reviewed{*character, *humanoid, sampled,
+                              floor_m,    point,     told.direction.value_or(Vec3::Zero())};
+  for (const ThemeKind theme : {ThemeKind::light, ThemeKind::dark}) {
+    auto thumbnail = review_thumbnail(reviewed, theme);
+    if (!thumbnail) return thumbnail.error();
+    (theme == ThemeKind::light ? result.thumbnail_light : result.thumbnail_dark) = std::move(*thumbnail);
+  }
   return result;
 }
 

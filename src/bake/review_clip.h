@@ -17,7 +17,7 @@ namespace ukemi {
 struct ReviewClip {
   std::string clip_json;       // without the key "character"
   std::string character_json;  // skeleton and meshes; equal for equal characters
-  std::vector<std::uint8_t> thumbnail;
+  std::vector<std::uint8_t> thumbnail_light, thumbnail_dark;  // WebP
   double duration_s = 0.0;
   double travel_m = 0.0;           // of the hips over the ground, from first to last frame
   double clip_excess_max_deg = 0;  // of the clip as it is stored

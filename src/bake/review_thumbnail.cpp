@@ -1,42 +1,59 @@
 #include "bake/review_thumbnail.h"
 
-#include <algorithm>
+#include <optional>
 
 #include "bake/start.h"
-#include "render/page.h"
-#include "render/staging.h"
+#include "body/body.h"
 
 namespace ukemi {
 namespace {
 
-constexpr int kWidth = 360;
+constexpr int kWidth = 400;  // twice a small card's, for screens with fine pixels
 constexpr int kHeight = 300;
-constexpr int kMoments = 4;  // of the clip, of which the third is shown
+constexpr double kQuality = 80.0;
+
+/// What is drawn where a character has no mesh.
+struct Shapes {
+  std::vector<BodyPose> segments;
+  std::optional<ArticulatedBody> body;
+};
+
+Result<Shapes> shapes_of(const Character& character, const Humanoid& humanoid, const Clip& clip) {
+  Shapes shapes;
+  for (const Pose& pose : clip.frames)
+    shapes.segments.push_back(canonical_segments_of(character.skeleton, humanoid, pose));
+  Diagnostics quiet;
+  auto body =
+      build_body(character, humanoid, clip.frames.front(), shapes.segments.front(), BodyOptions{}, quiet);
+  if (!body) return body.error();
+  shapes.body = std::move(*body);
+  return shapes;
+}
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> review_thumbnail(const Character& character, const Humanoid& humanoid,
-                                                   const Clip& clip, const Vec3& direction, double floor_m) {
-  Clip on_floor = clip;
-  if (floor_m != 0.0)
-    for (Pose& frame : on_floor.frames)
-      frame = moved(character.skeleton, humanoid, frame, Vec3(0.0, -floor_m, 0.0));
+Result<std::vector<std::uint8_t>> review_thumbnail(const ReviewedClip& reviewed, ThemeKind theme) {
+  const auto& [character, humanoid, given, floor_m, point, direction] = reviewed;
+  const Vec3 down(0.0, -floor_m, 0.0);
+  Clip clip = given;
+  for (Pose& frame : clip.frames) frame = moved(character.skeleton, humanoid, frame, down);
   Shot shot;
   shot.character = &character;
   shot.humanoid = &humanoid;
-  shot.clip = &on_floor;
+  shot.clip = &clip;
+  shot.impact_point = point + down;
   shot.impact_direction = direction;
-  const Figure figure(shot, false);
-  JointPaths joints;
-  for (std::size_t frame = 0; frame < on_floor.frames.size(); ++frame)
-    joints.push_back(figure.joints(static_cast<int>(frame)));
-  const std::vector<Moment> moments = choose_moments(on_floor, joints, kMoments);
-  const Moment& moment = moments[std::min<std::size_t>(2, moments.size() - 1)];
-  auto painter = Painter::make(kWidth, kHeight, decode_textures(character));
-  if (!painter) return painter.error();
-  const Staging staging =
-      set_stage(figure, shot, joints, moments, static_cast<double>(kWidth) / kHeight, 0.0);
-  return encode_png((*painter)->draw(figure.geometry(moment.frame), staging.at(moment.frame)));
+  std::optional<Shapes> shapes;
+  if (character.parts.empty()) {
+    auto made = shapes_of(character, humanoid, clip);
+    if (!made) return made.error();
+    shapes = std::move(*made);
+    shot.body = &*shapes->body;
+    shot.segments = &shapes->segments;
+  }
+  const auto picture = render_thumbnail(shot, {kWidth, kHeight, theme});
+  if (!picture) return picture.error();
+  return encode_webp(*picture, kQuality);
 }
 
 }  // namespace ukemi

@@ -8,12 +8,21 @@
 #include "base/character.h"
 #include "base/result.h"
 #include "humanoid/humanoid.h"
+#include "render/render.h"
 
 namespace ukemi {
 
-/// A PNG of the clip's most telling moment. `direction`: of the blow, zero where there is none. `floor_m`:
-/// height of the floor. Errors: output.
-Result<std::vector<std::uint8_t>> review_thumbnail(const Character& character, const Humanoid& humanoid,
-                                                   const Clip& clip, const Vec3& direction, double floor_m);
+/// A clip and what is known of its blow.
+struct ReviewedClip {
+  const Character& character;
+  const Humanoid& humanoid;
+  const Clip& clip;
+  double floor_m = 0.0;                  // height of the floor
+  Vec3 impact_point = Vec3::Zero();      // world
+  Vec3 impact_direction = Vec3::Zero();  // zero: unknown
+};
+
+/// A WebP of the clip half-way through its motion. Errors: output.
+Result<std::vector<std::uint8_t>> review_thumbnail(const ReviewedClip& reviewed, ThemeKind theme);
 
 }  // namespace ukemi

@@ -113,7 +113,8 @@ TEST_F(Reviewed, AFolderOfBakesNeedsNoManifest) {
   EXPECT_EQ(list[0]["figures"]["momentum_n_s"], report["impact"]["momentum_n_s"]);
   for (const Json& one : list) {
     EXPECT_TRUE(fs::exists(folder / "review/clips" / (one["clip"].get<std::string>() + ".js")));
-    EXPECT_TRUE(fs::exists(folder / "review" / one["thumbnail"].get<std::string>()));
+    for (const char* thumbnail : {"thumbnail", "thumbnail_dark"})
+      EXPECT_EQ(read(folder / "review" / one[thumbnail].get<std::string>()).substr(8, 4), "WEBP");
   }
 }
 
@@ -179,7 +180,7 @@ TEST_F(Reviewed, NamesCannotLeaveTheirPlace) {
 TEST_F(Reviewed, PageIsTheSameForAnyNumberOfThreads) {
   review(1);
   const auto first = page_files();
-  EXPECT_GE(first.size(), 9u);
+  EXPECT_GE(first.size(), 11u);
   review(3);
   EXPECT_EQ(page_files(), first);
 }
@@ -189,7 +190,7 @@ TEST_F(Reviewed, PageAgainLeavesNothingOfTheLast) {
   const std::size_t before = page_files().size();
   for (const char* name : {"head.glb", "head.bvh", "head.json"}) fs::remove(folder / "mannequin" / name);
   EXPECT_EQ(review().reactions, 1);
-  EXPECT_EQ(page_files().size(), before - 2) << "a clip and a thumbnail less";
+  EXPECT_EQ(page_files().size(), before - 3) << "a clip and its two thumbnails less";
 }
 
 TEST_F(Reviewed, NothingOfOthersIsLost) {

@@ -1,5 +1,7 @@
 // Writes the review page's files to assets/web: one classic script (browsers load no modules from disk), the style
-// sheet and the page. `npm ci && npm run build`; build.mjs FOLDER writes elsewhere.
+// sheet and the page. What it writes is committed: neither a build nor an installation needs npm or a network, and
+// tests/browser finds out when it is not what the sources make. `npm ci && npm run build`; build.mjs FOLDER writes
+// elsewhere.
 import { copyFileSync, mkdirSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';

@@ -22,7 +22,7 @@ class Card {
     this.grid = grid;
     this.reaction = reaction;
     this.picture = el('div', { class: 'picture' }, reaction.thumbnail
-      ? el('img', { src: address(`review/${reaction.thumbnail}`), alt: '', loading: 'lazy', decoding: 'async', width: 360, height: 300 })
+      ? ['light', 'dark'].map((theme) => el('img', { class: theme, src: address(`review/${theme === 'dark' ? reaction.thumbnail_dark : reaction.thumbnail}`), alt: '', loading: 'lazy', decoding: 'async', width: 400, height: 300 }))
       : el('div', { class: 'none' }, reaction.error ?? 'no picture'));
     const f = reaction.figures ?? {};
     const bad = excessOf(reaction) > 1;

@@ -94,7 +94,7 @@ function colorsOf(element) {
   const style = getComputedStyle(element);
   const color = (name) => style.getPropertyValue(name).trim();
   const dark = document.documentElement.dataset.theme === 'dark';
-  return { dark, good: color('--good'), bad: color('--bad'), warn: color('--near'), calm: dark ? '#f2ece4' : '#2e2a26', soft: color('--soft'), accent: color('--accent'), grid: dark ? '#6b6259' : '#a3957f' };
+  return { dark, good: color('--good'), bad: color('--bad'), warn: color('--near'), calm: dark ? '#eceef2' : '#2e2a26', soft: color('--soft'), accent: color('--accent'), grid: dark ? '#6f7787' : '#a3957f' };
 }
 
 export class Stage {

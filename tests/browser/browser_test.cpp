@@ -1,0 +1,135 @@
+// The review page as a reviewer meets it: in a real browser (drive.mjs), its joints where the program has
+// them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "humanoid/humanoid.h"
+#include "load/load.h"
+
+namespace ukemi {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double kToleranceM = 0.0001;
+constexpr int kTimes = 12;
+const char* const kHostileName = "</script><img src=x onerror=alert(1)>'\"&amp;";
+
+/// The program's output and exit status.
+std::pair<std::string, int> run(const std::string& command) {
+  std::string output;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return {"cannot start " + command, -1};
+  std::array<char, 4096> buffer;
+  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) output.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  return {output, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
+}
+
+std::string missing() {
+  if (run("node --version").second != 0) return "node is not installed";
+  if (!fs::exists("/usr/bin/chromium") && !fs::exists("/usr/bin/chromium-browser") &&
+      !fs::exists("/usr/bin/google-chrome"))
+    return "Chromium is not installed";
+  if (!fs::exists(fs::path(UKEMI_BROWSER_FOLDER) / "node_modules/playwright-core"))
+    return "run npm ci in tests/browser, or tools/test";
+  return "";
+}
+
+class Browser : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string what = missing(); !what.empty()) GTEST_SKIP() << what;
+    folder = fs::path(testing::TempDir()) / ("ukemi_browser_" + std::to_string(getpid()));
+    fs::remove_all(folder);
+    fs::create_directories(folder / "batch/mannequin");
+    fs::create_directories(folder / "hostile");
+  }
+  void TearDown() override {
+    if (!folder.empty()) fs::remove_all(folder);
+  }
+
+  void program(const std::string& arguments) {
+    const auto [output, status] = run(fmt::format("'{}' {}", UKEMI_PROGRAM, arguments));
+    ASSERT_EQ(status, 0) << arguments << "\n" << output;
+  }
+  void bake(const std::string& hit, const std::string& from) {
+    const std::string stem = (folder / "batch/mannequin" / (hit + "_" + from)).string();
+    program(fmt::format("bake mannequin --hit {} --from {} -o '{}.glb' --report '{}.json' --quiet", hit, from,
+                        stem, stem));
+  }
+
+  fs::path folder;
+};
+
+/// Places of all nodes of a file's last clip, metres.
+Json judged(const fs::path& file, const std::string& id) {
+  Diagnostics diagnostics;
+  const auto character = load_character(file, {}, diagnostics);
+  const auto humanoid = map_humanoid(*character, {}, diagnostics);
+  const Animation& clip = character->animations.back();
+  Json json{{"id", id}, {"tolerance_m", kToleranceM}, {"times", Json::array()}, {"places", Json::array()}};
+  for (int i = 0; i < kTimes; ++i) {
+    const double time_s = clip.duration_s() * i / (kTimes - 1);
+    Json places = Json::array();
+    for (const Affine& node :
+         world_transforms(character->skeleton, sample(character->skeleton, clip, clip.start_s + time_s))) {
+      const Vec3 place = humanoid->world_from_file * Vec3(node.translation());
+      places.push_back({place.x(), place.y(), place.z()});
+    }
+    json["times"].push_back(time_s);
+    json["places"].push_back(std::move(places));
+  }
+  return json;
+}
+
+TEST_F(Browser, ServesAReviewer) {
+  for (const char* hit : {"head", "chest", "thigh_l"})
+    for (const char* from : {"front", "left"}) bake(hit, from);
+  program(fmt::format("review '{}' --quiet", (folder / "batch").string()));
+  const fs::path clip = folder / "batch/mannequin/head_left.glb";
+  fs::copy_file(clip, folder / "hostile/a.glb");
+  const Json manifest{
+      {"format", 1},
+      {"reactions",
+       {{{"name", kHostileName}, {"character", kHostileName}, {"status", "done"}, {"outputs", {"a.glb"}}}}}};
+  ASSERT_TRUE(write_file(folder / "hostile/manifest.json", manifest.dump()));
+  program(fmt::format("review '{}' --quiet", (folder / "hostile").string()));
+  const Json work{{"folder", (folder / "batch").string()},
+                  {"reactions", 6},
+                  {"judged", judged(clip, "mannequin/head_left")},
+                  {"hostile", {{"folder", (folder / "hostile").string()}, {"name", kHostileName}}}};
+  ASSERT_TRUE(write_file(folder / "work.json", work.dump()));
+  const auto [output, status] =
+      run(fmt::format("node '{}/drive.mjs' '{}'", UKEMI_BROWSER_FOLDER, (folder / "work.json").string()));
+  EXPECT_EQ(status, 0) << output;
+  EXPECT_NE(output.find(" checks, 0 failed"), std::string::npos) << output;
+}
+
+TEST(Web, IsWhatItsSourcesMake) {
+  const fs::path web = UKEMI_WEB_FOLDER;
+  if (!fs::exists(web / "node_modules/esbuild")) GTEST_SKIP() << "run npm ci in tools/web, or tools/test";
+  const fs::path made = fs::path(testing::TempDir()) / ("ukemi_web_" + std::to_string(getpid()));
+  const auto [output, status] =
+      run(fmt::format("node '{}' '{}'", (web / "build.mjs").string(), made.string()));
+  ASSERT_EQ(status, 0) << output;
+  for (const char* name : {"index.html", "review.css", "review.js"}) {
+    const auto kept = find_asset(fs::path("web") / name);
+    ASSERT_TRUE(kept);
+    EXPECT_TRUE(*read_file(*kept, 16u << 20) == *read_file(made / name, 16u << 20))
+        << name << ": run npm run build in tools/web";
+  }
+  fs::remove_all(made);
+}
+
+}  // namespace
+}  // namespace ukemi
