@@ -40,30 +40,30 @@ const player = (page, script) => page.evaluate(`globalThis.ukemi.page.player.${s
 async function filtersAndOrder(page) {
   const all = (await names(page)).length;
   equal('a card for each reaction', all, work.reactions);
-  await page.getByLabel('Target').selectOption('head');
+  await page.getByLabel('Target', { exact: true }).selectOption('head');
   const heads = await names(page);
   check('filter: target', heads.length > 0 && heads.length < all && heads.every((name) => name.startsWith('head')), heads.join(' '));
-  await page.getByLabel('Target').selectOption('');
-  await page.getByLabel('From').selectOption('left');
+  await page.getByLabel('Target', { exact: true }).selectOption('');
+  await page.getByLabel('From', { exact: true }).selectOption('left');
   check('filter: side', (await names(page)).every((name) => name.endsWith('left')));
-  await page.getByLabel('From').selectOption('');
-  await page.getByLabel('Search').fill('chest front');
+  await page.getByLabel('From', { exact: true }).selectOption('');
+  await page.getByLabel('Search', { exact: true }).fill('chest front');
   equal('search', await names(page), ['chest_front']);
-  await page.getByLabel('Search').fill('nothing like it');
+  await page.getByLabel('Search', { exact: true }).fill('nothing like it');
   check('an empty list says so', await page.getByText('No reaction fits').isVisible());
-  await page.getByLabel('Search').fill('');
-  await page.getByLabel('Order').selectOption('excess');
+  await page.getByLabel('Search', { exact: true }).fill('');
+  await page.getByLabel('Order', { exact: true }).selectOption('excess');
   const excess = await page.evaluate(() => globalThis.ukemi.page.shown.map((one) => one.figures.excess_max_deg));
   equal('order: largest excess first', excess, [...excess].sort((a, b) => b - a));
   await page.getByRole('button', { name: 'Largest first' }).click();
   const up = await page.evaluate(() => globalThis.ukemi.page.shown.map((one) => one.figures.excess_max_deg));
   equal('order: the other way', up, [...excess].reverse());
   check('the address keeps the order', page.url().includes('order=excess'));
-  await page.getByLabel('Order').selectOption('name');
+  await page.getByLabel('Order', { exact: true }).selectOption('name');
 }
 
 async function judgeByKeys(page) {
-  await page.keyboard.press('ArrowDown');
+  await page.keyboard.press('Escape');
   const order = await names(page);
   await page.keyboard.press('a');
   await page.keyboard.press('r');

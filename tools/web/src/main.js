@@ -79,10 +79,10 @@ class Page {
 
   buildFilters() {
     this.search = el('input', { type: 'search', placeholder: 'Search (/)', 'aria-label': 'Search', oninput: () => this.update() });
-    this.selects = FILTERS.map((filter) => ({ filter, select: el('select', { onchange: () => this.update() }) }));
+    this.selects = FILTERS.map((filter) => ({ filter, select: el('select', { 'aria-label': filter.label, onchange: () => this.update() }) }));
     const fields = this.selects.filter(({ filter }) => this.fillSelect(filter) > 1 || filter.key === 'result').map(({ filter, select }) => el('label', { class: 'field' }, filter.label, select));
     this.verdictButtons = VERDICTS.map(({ key: verdict, label }) => el('button', { type: 'button', onclick: () => this.setVerdict(verdict) }, label));
-    this.order = el('select', { onchange: () => this.setOrder(this.order.value) }, ORDERS.map(({ key: value, label }) => el('option', { value }, label)));
+    this.order = el('select', { 'aria-label': 'Order', onchange: () => this.setOrder(this.order.value) }, ORDERS.map(({ key: value, label }) => el('option', { value }, label)));
     this.downButton = el('button', { type: 'button', class: 'button icon', 'aria-label': 'Largest first', title: 'Largest first', onclick: () => this.setDown(!this.down) });
     this.countText = el('span', { class: 'count number', role: 'status' });
     return el('div', { class: 'filters', role: 'search' },
@@ -109,7 +109,7 @@ class Page {
       el('h2', {}, 'Keys'),
       el('div', { class: 'columns' },
         list('Everywhere', [['A', 'accept'], ['R', 'reject'], ['U', 'clear the verdict'], ['Z', 'take back the last verdict'], ['C', 'comment'], ['J K', 'next, previous'], ['T', 'light or dark'], ['?', 'this help']]),
-        list('All reactions', [['← → ↑ ↓', 'move'], ['Enter', 'open the player'], ['/', 'search'], ['E', 'export the verdicts']]),
+        list('All reactions', [['← → ↑ ↓', 'move'], ['Enter', 'open the player'], ['/', 'search'], ['Esc', 'from the filters to the cards'], ['E', 'export the verdicts']]),
         list('Player', [['Space', 'play or pause'], ['← →', 'a frame; with Shift ten'], ['Home End', 'start, end'], ['- +', 'slower, faster'], ['L', 'loop'], ['V', 'another view; drag turns, wheel zooms'], ['O', 'ranges of motion'], ['[ ]', 'another joint'], ['P', 'pin to compare'], ['Esc', 'back']])),
       el('h2', {}, 'Figures'),
       el('p', {}, 'Excess is how far a joint left its range of motion, before what little was left over was projected away; over 1° counts as an error. The timeline shows how near each joint of the clip is to the edge of its range at every moment: pale is far inside, amber is at the edge, where joints of a body at rest often lie, red is outside.'),
@@ -269,7 +269,7 @@ class Page {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     const typing = event.target.closest?.('input, textarea, select');
     if (typing) {
-      if (event.key === 'Escape' && event.target === this.search) this.grid.focus();
+      if (event.key === 'Escape' && !this.player.isOpen) this.grid.focus();
       return;
     }
     const open = this.player.isOpen;
@@ -280,12 +280,12 @@ class Page {
       e: () => this.export(),
       z: () => this.undo(),
     };
-    const go = { ArrowDown: 1, ArrowRight: 1, j: 1 };
+    const toCards = ['Escape', 'ArrowDown', 'ArrowRight', 'j'];
     const name = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (Object.hasOwn(actions, name)) {
       event.preventDefault();
       actions[name]();
-    } else if (!open && !this.help.open && Object.hasOwn(go, name) && event.target === document.body) {
+    } else if (!open && !this.help.open && toCards.includes(name) && !this.grid.list.contains(event.target)) {
       event.preventDefault();
       this.grid.focus();
     }

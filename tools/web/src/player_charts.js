@@ -36,6 +36,7 @@ export class RomPanel {
     const [joint, other] = this.joints;
     this.drawing.replaceChildren();
     if (!joint) return;
+    this.drawing.setAttribute('aria-label', `Range of motion of ${joint.name.replaceAll('_', ' ')}, with the clip’s way through it`);
     const corners = joint.polygon_deg;
     const all = [...corners, ...Array.from(joint.ay, (ay, i) => [ay, joint.az[i]]), [0, 0]];
     const low = [0, 1].map((i) => Math.min(...all.map((p) => p[i])));
