@@ -28,10 +28,12 @@ struct BakeSettings {
   std::string from = "front";            // front back left right above or AZIMUTH[,ELEVATION] degrees
   std::string preset = "medicine-ball";  // assets/impacts/presets.toml
   std::optional<double> ball_mass_kg, ball_speed_m_s, ball_radius_m;
-  std::optional<std::string> scene;  // ball slope fall push impulse box; from the preset unless given
-  double fall_height_m = 0.0;        // fall: so high above the floor
-  double tip_speed_m_s = 0.8;        // fall: of the centre of mass
-  double slope_deg = 20.0;           // slope: of the ramp
+  std::optional<std::string> scene;         // ball slope fall push impulse box; from the preset unless given
+  double strength = 1.0;                    // of the blow: times its momentum
+  double aim_up_m = 0.0, aim_left_m = 0.0;  // ball, box: from the segment's centre, as the blow sees it
+  double fall_height_m = 0.0;               // fall: so high above the floor
+  double tip_speed_m_s = 0.8;               // fall: of the centre of mass
+  double slope_deg = 20.0;                  // slope: of the ramp
   // body
   std::optional<double> mass_kg;
   Sex sex = Sex::male;

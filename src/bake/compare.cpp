@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "bake/random.h"
 #include "bake/report.h"
 
 namespace ukemi {
@@ -25,25 +26,6 @@ constexpr double kPaperActiveK = 1.0;  // 1/s
 constexpr double kExplodedGain_j = 1000.0;
 constexpr double kExplodedSeparation_m = 0.2;
 constexpr double kMaxElevation = radians(15.0);
-
-/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers everywhere, which std distributions are not.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    return z ^ (z >> 31);
-  }
-  /// In [low, high).
-  double uniform(double low, double high) {
-    return low + (high - low) * 0x1p-53 * static_cast<double>(next() >> 11);
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 double thread_seconds() {
   timespec now{};

@@ -149,6 +149,14 @@ Vec3 forward_of(const Quat& world_from_pelvis) {
   return (anterior.y() < 0.0 ? up : Vec3(-up)).normalized();
 }
 
+/// Up and to the left in the plane that the blow meets; a vertical blow has no left, and up is forward.
+Vec3 aim_offset(const Vec3& direction, const BakeSettings& settings) {
+  const Vec3 across = direction.cross(Vec3::UnitY());
+  const Vec3 left = across.norm() > 1e-6 ? Vec3(-across.normalized()) : Vec3(Vec3::UnitX());
+  const Vec3 up = direction.cross(left);
+  return settings.aim_up_m * up + settings.aim_left_m * left;
+}
+
 Result<ImpactPreset> preset_named(const std::string& text) {
   const auto presets = load_presets();
   if (!presets) return presets.error();
@@ -238,14 +246,15 @@ Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelv
   scene.target = *target;
   scene.direction = travel_direction(*from, world_from_pelvis);
   scene.ball_mass_kg = settings.ball_mass_kg.value_or(preset->mass_kg);
-  scene.ball_speed_m_s = settings.ball_speed_m_s.value_or(preset->speed_m_s);
+  scene.ball_speed_m_s = settings.strength * settings.ball_speed_m_s.value_or(preset->speed_m_s);
   scene.ball_radius_m = settings.ball_radius_m.value_or(preset->radius_m);
   const double momentum = scene.ball_mass_kg * scene.ball_speed_m_s;
   scene.impulse_n_s = momentum;
   scene.push_duration_s = preset->push_duration_s;
   scene.push_force_n = momentum / scene.push_duration_s;
   scene.fall_height_m = settings.fall_height_m;
-  scene.tip_speed_m_s = settings.tip_speed_m_s;
+  scene.tip_speed_m_s = settings.strength * settings.tip_speed_m_s;
+  scene.aim_offset = aim_offset(scene.direction, settings);
   scene.slope_rad = radians(settings.slope_deg);
   return scene;
 }

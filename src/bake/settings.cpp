@@ -252,6 +252,15 @@ Settings hit_settings() {
                      "ball-radius", "M", Range{0.005, 5.0}, "its radius, or half edge",
                      [](auto& s) -> auto& { return s.ball_radius_m; }),
                  "the preset's"),
+      number<S>(
+          "strength", "TIMES", Range{0.01, 100.0}, "of the blow: times the preset's momentum",
+          [](auto& s) -> auto& { return s.strength; }),
+      number<S>(
+          "aim-up", "M", Range{-5.0, 5.0}, "ball, box: meets the segment so far above its centre",
+          [](auto& s) -> auto& { return s.aim_up_m; }),
+      number<S>(
+          "aim-left", "M", Range{-5.0, 5.0}, "ball, box: so far to the left, seen from where it comes from",
+          [](auto& s) -> auto& { return s.aim_left_m; }),
       with_unset(text<S>(
                      "scene", "ball|slope|fall|push|impulse|box",
                      "what happens: a ball flies in, a ball rolls down a ramp, the body is tipped over or "

@@ -19,8 +19,10 @@ struct Command {
   int (*run)(const Arguments&);
 };
 
-constexpr std::array<Command, 8> kCommands = {{
+constexpr std::array<Command, 10> kCommands = {{
     {"bake", "CHARACTER", "one hit reaction of a character: clip, contact sheet, report", bake_command},
+    {"batch", "RECIPE", "many reactions, in many processes, resumable", batch_command},
+    {"recipe", "", "prints a commented recipe for batch", recipe_command},
     {"inspect", "FILE", "what is in a file: skeleton, humanoid map, units, clips, range of motion",
      inspect_command},
     {"render", "FILE", "contact sheet of any clip in a file", render_command},

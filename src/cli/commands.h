@@ -9,6 +9,8 @@ namespace ukemi {
 using Arguments = std::vector<std::string>;
 
 int bake_command(const Arguments& arguments);
+int batch_command(const Arguments& arguments);
+int recipe_command(const Arguments& arguments);
 int inspect_command(const Arguments& arguments);
 int render_command(const Arguments& arguments);
 int compare_command(const Arguments& arguments);

@@ -53,12 +53,12 @@ void Stage::begin(Diagnostics& diagnostics) {
   }
 }
 
-/// Aimed at the target's centre; where another segment is in the way the aim moves away from it, by at most
-/// the missile's radius.
+/// Aimed at the target's centre, or beside it by the scene's offset; where another segment is in the way the
+/// aim moves away from it, by at most the missile's radius.
 Vec3 Stage::aim(dGeomID probe, Diagnostics& diagnostics) const {
   constexpr int kTries = 12;
   const Vec3& along = scene_.direction;
-  const Vec3 centre = vec3(dBodyGetPosition(target().id));
+  const Vec3 centre = vec3(dBodyGetPosition(target().id)) + scene_.aim_offset;
   const Vec3 start = centre - kReach * along;
   const auto first = collision_.first_touch(probe, start, along, kReach);
   if (!first) return centre;

@@ -31,6 +31,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"draco/", {"load"}},
       {"meshoptimizer", {"load"}},
       {"ode/", {"simulate"}},
+      {"openssl/", {"bake"}},
       {"png.h", {"render"}},
       {"webp/", {"render"}},
       {"ft2build.h", {"render"}},
@@ -43,8 +44,9 @@ const std::vector<ThirdParty>& third_parties() {
   return table;
 }
 
-constexpr std::string_view kSystemHeaders[] = {"dirent.h", "dlfcn.h",  "fcntl.h", "poll.h",    "pthread.h",
-                                               "sched.h",  "signal.h", "spawn.h", "termios.h", "unistd.h"};
+constexpr std::string_view kSystemHeaders[] = {"dirent.h", "dlfcn.h", "fcntl.h",   "fnmatch.h",
+                                               "glob.h",   "poll.h",  "pthread.h", "sched.h",
+                                               "signal.h", "spawn.h", "termios.h", "unistd.h"};
 
 struct Include {
   std::string name;

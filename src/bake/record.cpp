@@ -1,0 +1,102 @@
+#include "bake/record.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace ukemi {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const ReactionFigures& figures) {
+  Json json;
+  json["excess_max_deg"] = figures.excess_max_deg;
+  json["over_1deg"] = figures.over_1deg;
+  json["travel_m"] = figures.travel_m;
+  json["momentum_n_s"] = figures.momentum_n_s;
+  json["rest_time_s"] = figures.rest_time_s ? Json(*figures.rest_time_s) : Json(nullptr);
+  json["duration_s"] = figures.duration_s;
+  json["joint_separation_max_m"] = figures.joint_separation_max_m;
+  json["energy_gain_max_j"] = figures.energy_gain_max_j;
+  json["frames"] = figures.frames;
+  json["keys"] = figures.keys;
+  return json;
+}
+
+ReactionFigures figures_from(const Json& json) {
+  ReactionFigures figures;
+  figures.excess_max_deg = json.at("excess_max_deg");
+  figures.over_1deg = json.at("over_1deg");
+  figures.travel_m = json.at("travel_m");
+  figures.momentum_n_s = json.at("momentum_n_s");
+  if (!json.at("rest_time_s").is_null()) figures.rest_time_s = json.at("rest_time_s").get<double>();
+  figures.duration_s = json.at("duration_s");
+  figures.joint_separation_max_m = json.at("joint_separation_max_m");
+  figures.energy_gain_max_j = json.at("energy_gain_max_j");
+  figures.frames = json.at("frames");
+  figures.keys = json.at("keys");
+  return figures;
+}
+
+}  // namespace
+
+ReactionFigures figures_of(const BakedFile& baked) {
+  const BakeOutcome& outcome = baked.outcome;
+  constexpr int pelvis = index(Segment::pelvis);
+  const std::vector<BodyPose>& frames = outcome.simulation.trajectory.frames;
+  const Vec3 moved = frames.back()[pelvis].translation - frames.front()[pelvis].translation;
+  ReactionFigures figures;
+  figures.excess_max_deg = outcome.simulation.limits.excess_max_deg;
+  figures.over_1deg = outcome.simulation.limits.over_1deg;
+  figures.travel_m = std::hypot(moved.x(), moved.z());
+  figures.momentum_n_s = outcome.simulation.figures.momentum_n_s;
+  figures.rest_time_s = outcome.simulation.figures.rest_time_s;
+  figures.duration_s = outcome.clip.duration_s();
+  figures.joint_separation_max_m = outcome.simulation.figures.joint_separation_max_m;
+  figures.energy_gain_max_j = outcome.simulation.figures.energy_gain_max_j;
+  figures.frames = static_cast<long>(outcome.clip.frames.size());
+  figures.keys = static_cast<long>(baked.reduced.keys);
+  return figures;
+}
+
+std::string record_line(const ReactionRecord& record) {
+  Json json;
+  json["format"] = 1;
+  json["character"] = record.character;
+  json["name"] = record.name;
+  json["digest"] = record.digest;
+  json["figures"] = record.figures ? to_json(*record.figures) : Json(nullptr);
+  json["files"] = Json::array();
+  for (const WrittenFile& file : record.files)
+    json["files"].push_back({{"name", file.name}, {"bytes", file.bytes}, {"sha256", file.sha256}});
+  json["warnings"] = record.warnings;
+  json["error"] = record.error;
+  json["fix"] = record.fix;
+  json["cannot_write"] = record.cannot_write;
+  json["seconds"] = record.seconds;
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::optional<ReactionRecord> parse_record(std::string_view line) {
+  try {
+    const Json json = Json::parse(line);
+    if (json.at("format") != 1) return std::nullopt;
+    ReactionRecord record;
+    record.character = json.at("character");
+    record.name = json.at("name");
+    record.digest = json.at("digest");
+    if (!json.at("figures").is_null()) record.figures = figures_from(json.at("figures"));
+    for (const Json& file : json.at("files"))
+      record.files.push_back({file.at("name"), file.at("bytes"), file.at("sha256")});
+    record.warnings = json.at("warnings").get<std::vector<std::string>>();
+    record.error = json.at("error");
+    record.fix = json.at("fix");
+    record.cannot_write = json.at("cannot_write");
+    record.seconds = json.at("seconds");
+    return record;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace ukemi

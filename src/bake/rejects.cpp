@@ -1,0 +1,78 @@
+#include "bake/rejects.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+
+namespace ukemi {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t kMaxBytes = 64u << 20;
+
+using Json = nlohmann::json;
+
+Error refused(const fs::path& file, std::string what) {
+  return {ErrorKind::input,
+          file.string(),
+          0,
+          0,
+          "",
+          std::move(what),
+          "give the file that the review page saves for this batch"};
+}
+
+/// Index of the reaction that an entry names.
+Result<std::size_t> reaction_named(const fs::path& file, const Json& entry, const BatchPlan& plan) {
+  const std::string character = entry.at("character"), name = entry.at("name");
+  for (std::size_t i = 0; i < plan.reactions.size(); ++i)
+    if (plan.reactions[i].name == name &&
+        plan.recipe.characters[plan.reactions[i].character].name == character)
+      return i;
+  return refused(file, fmt::format("the recipe has no reaction '{}' of '{}'", name, character));
+}
+
+Status reject(const fs::path& file, const Json& entry, BatchPlan& plan) {
+  const auto i = reaction_named(file, entry, plan);
+  if (!i) return i.error();
+  if (entry.contains("digest") && entry["digest"] != plan.planned[*i].digest) return Done{};
+  const std::pair key(entry.at("character").get<std::string>(), entry.at("name").get<std::string>());
+  Verdicts& known = plan.history.verdicts;
+  const bool varies = plan.reactions[*i].varies;
+  const int take = known.takes[key] + (varies ? 1 : 0);
+  known.takes[key] = plan.news.takes[key] = take;
+  if (varies) return Done{};
+  known.left_out[key] = plan.news.left_out[key] = entry.value("comment", "");
+  return Done{};
+}
+
+Status accept(const fs::path& file, const Json& entry, BatchPlan& plan) {
+  const auto i = reaction_named(file, entry, plan);
+  if (!i) return i.error();
+  const std::pair key(entry.at("character").get<std::string>(), entry.at("name").get<std::string>());
+  if (plan.history.verdicts.left_out.erase(key) == 0) return Done{};
+  plan.news.takes[key] = plan.history.verdicts.takes[key];
+  return Done{};
+}
+
+}  // namespace
+
+Status take_rejects(const fs::path& file, BatchPlan& plan) {
+  const auto bytes = read_file(file, kMaxBytes);
+  if (!bytes) return bytes.error();
+  try {
+    const Json json = Json::parse(bytes->begin(), bytes->end());
+    if (json.at("format") != 1) return refused(file, "has a format that this program does not know");
+    for (const Json& entry : json.value("rejects", Json::array()))
+      if (const Status status = reject(file, entry, plan); !status) return status;
+    for (const Json& entry : json.value("accepts", Json::array()))
+      if (const Status status = accept(file, entry, plan); !status) return status;
+  } catch (const Json::exception& exception) {
+    return refused(file, fmt::format("is no list of verdicts: {}", exception.what()));
+  }
+  return Done{};
+}
+
+}  // namespace ukemi

@@ -1,0 +1,261 @@
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <csignal>
+#include <string>
+#include <thread>
+
+#include "bake/batch.h"
+#include "bake/manifest.h"
+#include "base/files.h"
+#include "cli/batch_progress.h"
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/options.h"
+
+namespace ukemi {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kMostWorkers = 1024;
+constexpr int kMostShards = 100000;
+constexpr double kMegabyte = 1 << 20;
+
+struct BatchRequest {
+  std::string recipe;
+  BatchSettings settings;
+  double memory_mb = 4096.0;
+  double max_excess_deg = -1.0;
+  bool dry_run = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+Error usage(std::string what, std::string fix) {
+  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+std::optional<int> whole_number(std::string_view text) {
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto [parsed, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc() && parsed == end ? std::optional(value) : std::nullopt;
+}
+
+Status take_workers(const std::string& text, int& workers) {
+  const auto value = whole_number(text);
+  if (!value || *value < 1 || *value > kMostWorkers)
+    return usage(fmt::format("'{}' is not a whole number from 1 to {}", text, kMostWorkers),
+                 fmt::format("give a whole number from 1 to {}", kMostWorkers));
+  workers = *value;
+  return Done{};
+}
+
+Status take_shard(const std::string& text, Shard& shard) {
+  const auto slash = text.find('/');
+  const int index = whole_number(std::string_view(text).substr(0, slash)).value_or(0);
+  const int count =
+      slash == text.npos ? 0 : whole_number(std::string_view(text).substr(slash + 1)).value_or(0);
+  if (index < 1 || index > count || count > kMostShards)
+    return usage(fmt::format("'{}' is not I/N", text), "give the part and the number of parts: 1/4 to 4/4");
+  shard = {index, count};
+  return Done{};
+}
+
+int processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+void declare(Options& options, BatchRequest& request) {
+  BatchSettings& settings = request.settings;
+  options.argument("RECIPE", request.recipe, "a .toml file: ukemi recipe prints a commented one");
+  options.group("what is baked");
+  options.path("-o,--output", settings.folder,
+               "folder for manifest.json, manifest.csv and a folder of each character; made where missing");
+  options.flag("--resume", settings.resume,
+               "keep what the folder has of this recipe; bake what is missing or has other inputs");
+  options.flag("--force", settings.force, "bake everything again");
+  options.flag("--dry-run", request.dry_run, "list what would be baked and how long it would take");
+  options.custom(
+      "--shard", "I/N", [&settings](const std::string& text) { return take_shard(text, settings.shard); },
+      "only part I of N; the parts may share a folder");
+  options.paths("--merge", settings.merge,
+                "take over what shards baked, from this folder; bakes nothing; repeatable");
+  options.group("review");
+  options.path("--rejects", settings.rejects,
+               "verdicts saved from the review page: rejected variations are baked again with another seed, "
+               "other rejected reactions left out");
+  options.number("--max-excess", "DEG", request.max_excess_deg, Range{0.0, 180.0},
+                 "reject reactions that leave the range of motion farther (before projection); status 1");
+  options.flag("--reject-unsettled", settings.reject_unsettled,
+               "reject reactions that do not come to rest; status 1");
+  options.group("workers");
+  options.custom(
+      "-j,--jobs", "N",
+      [&settings](const std::string& text) { return take_workers(text, settings.workers.workers); },
+      fmt::format("worker processes [default: one for each processor, here {}; 1 to {}]", processors(),
+                  kMostWorkers));
+  options.number("--job-timeout", "S", settings.workers.job_timeout_s, Range{0.1, 86400.0},
+                 "a reaction that takes longer is given up, after a second try");
+  options.number("--job-memory", "MB", request.memory_mb, Range{256.0, 1048576.0},
+                 "address space of a worker; one that needs more loses its reaction, after a second try");
+  options.group("out");
+  options.flag("--json", request.json, "the manifest to stdout");
+  options.flag("--quiet", request.quiet, "nothing to stdout, no progress");
+}
+
+Status check(const BatchRequest& request) {
+  const BatchSettings& settings = request.settings;
+  if (settings.folder.empty()) return usage("no output", "add -o FOLDER");
+  if (request.json && request.quiet)
+    return usage("--json and --quiet exclude each other", "give one of them");
+  if (settings.resume && settings.force)
+    return usage("--resume and --force exclude each other", "give one of them");
+  if (!settings.merge.empty() && (settings.force || !settings.shard.whole()))
+    return usage("--merge excludes --force and --shard", "give --merge alone");
+  for (const fs::path& folder : settings.merge)
+    if (std::error_code error; !fs::is_directory(folder, error))
+      return Error{ErrorKind::input,
+                   folder.string(),
+                   0,
+                   0,
+                   "",
+                   "there is no such folder",
+                   "name a folder that a batch has written"};
+  return Done{};
+}
+
+volatile std::sig_atomic_t g_stopped_by = 0;
+void stop(int signal_number) { g_stopped_by = signal_number; }
+
+/// While it lives, Ctrl-C and the like are noted; a second one ends the program at once.
+class StopSignals {
+ public:
+  StopSignals() {
+    struct sigaction action {};
+    action.sa_handler = stop;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaction(number, &action, nullptr);
+  }
+  ~StopSignals() {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
+  }
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+};
+
+std::string duration_text(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", std::max(seconds, 1.0));
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+std::string_view plan_word(Plan plan) {
+  switch (plan) {
+    case Plan::keep:
+      return "keep";
+    case Plan::left_out:
+      return "leave out";
+    default:
+      return "bake";
+  }
+}
+
+/// What would be done, and how long it would take.
+Result<std::string> dry_run_text(const BatchPlan& plan, const BatchSettings& settings) {
+  std::string text;
+  for (std::size_t i = 0; i < plan.reactions.size(); ++i) {
+    const Reaction& reaction = plan.reactions[i];
+    if (plan.planned[i].plan == Plan::elsewhere) continue;
+    text += fmt::format("{:<9} {}/{}: {} from {}, {}\n", plan_word(plan.planned[i].plan),
+                        plan.recipe.characters[reaction.character].name, reaction.name, reaction.settings.hit,
+                        reaction.settings.from, reaction.settings.preset);
+  }
+  const auto seconds = estimate_seconds(plan, settings);
+  if (!seconds) return seconds.error();
+  text += fmt::format("{} to bake, {} to keep, {} left out", plan.count(Plan::bake), plan.count(Plan::keep),
+                      plan.count(Plan::left_out));
+  if (plan.count(Plan::bake) > 0)
+    text += fmt::format("; about {} with {} worker{}", duration_text(*seconds), settings.workers.workers,
+                        settings.workers.workers == 1 ? "" : "s");
+  return text + "\n";
+}
+
+std::size_t count(const BatchResult& result, ReactionStatus status) {
+  std::size_t sum = 0;
+  for (const ManifestEntry& entry : result.entries) sum += entry.status == status ? 1 : 0;
+  return sum;
+}
+
+std::string summary(const BatchRequest& request, const BatchPlan& plan, const BatchResult& result) {
+  std::string text =
+      fmt::format("{}: {} done", request.settings.folder.string(), count(result, ReactionStatus::done));
+  if (result.kept > 0) text += fmt::format(" ({} from before)", result.kept);
+  text += fmt::format(", {} rejected, {} failed\n", count(result, ReactionStatus::rejected),
+                      count(result, ReactionStatus::failed));
+  for (const ManifestEntry& entry : result.entries)
+    if (entry.status != ReactionStatus::done)
+      text += fmt::format("{} {}/{}: {}\n", name(entry.status),
+                          plan.recipe.characters[entry.reaction->character].name, entry.reaction->name,
+                          entry.error);
+  return text;
+}
+
+/// Says why the batch ended early, and how to go on.
+int report_stop(const BatchRequest& request, const BatchResult& result) {
+  const std::string resume =
+      fmt::format("ukemi batch {} -o {} --resume", request.recipe, request.settings.folder.string());
+  if (result.cannot_write) {
+    Error error = *result.cannot_write;
+    error.fix = fmt::format("{}; what is finished is kept, to go on: {}", error.fix, resume);
+    return print_error(error);
+  }
+  std::fputs(fmt::format("ukemi: stopped; {} finished reactions are kept, to go on: {}\n",
+                         result.baked + result.kept, resume)
+                 .c_str(),
+             stderr);
+  return 128 + g_stopped_by;
+}
+
+int run_planned(const BatchRequest& request, const BatchPlan& plan) {
+  const StopSignals signals;
+  auto result = [&] {
+    BatchProgressView view(request.quiet);
+    return run_batch(
+        plan, request.settings, [&view](const BatchProgress& progress) { view.show(progress); },
+        [&view] {
+          view.tick();
+          return g_stopped_by != 0;
+        });
+  }();
+  if (!result) return print_error(result.error());
+  if (result->stopped || result->cannot_write) return report_stop(request, *result);
+  const bool all_well = count(*result, ReactionStatus::done) == result->entries.size();
+  const int status = all_well ? 0 : 1;
+  if (request.quiet) return status;
+  const Manifest manifest{&plan.recipe, result->entries.size(), result->entries};
+  return print_result(request.json ? manifest_json(manifest) : summary(request, plan, *result), status);
+}
+
+}  // namespace
+
+int batch_command(const Arguments& arguments) {
+  BatchRequest request;
+  request.settings.workers.workers = processors();
+  Options options("batch", "bakes every reaction of a recipe, in as many processes as there are processors");
+  declare(options, request);
+  const auto outcome = options.parse(arguments);
+  if (!outcome) return print_error(outcome.error());
+  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const Status status = check(request); !status) return print_error(status.error());
+  request.settings.recipe = request.recipe;
+  request.settings.workers.memory_bytes = static_cast<std::size_t>(request.memory_mb * kMegabyte);
+  if (request.max_excess_deg >= 0.0) request.settings.max_excess_deg = request.max_excess_deg;
+  const auto plan = plan_batch(request.settings);
+  if (!plan) return print_error(plan.error());
+  if (!request.dry_run) return run_planned(request, *plan);
+  const auto text = dry_run_text(*plan, request.settings);
+  return text ? print_result(*text, 0) : print_error(text.error());
+}
+
+}  // namespace ukemi
