@@ -394,4 +394,11 @@ Result<Bones> find_bones(const Character& character, const HumanoidOptions& opti
   return bones;
 }
 
+std::optional<Bones> find_bones_by_shape(const Character& character, const HumanoidOptions& options) {
+  Bones bones;
+  if (const Status status = apply_user_map(character, options, bones); !status) return std::nullopt;
+  fill(bones, find_by_topology(character, rest_pose(character.skeleton)));
+  return complete(bones) ? std::optional(bones) : std::nullopt;
+}
+
 }  // namespace ukemi

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,10 @@ std::vector<char> skin_joints(const Character& character);
 /// Every source in turn. Errors: usage for a bad user map; input when the must-have bones (pelvis, head,
 /// upper arms, forearms, thighs, shanks) are not there.
 Result<Bones> find_bones(const Character& character, const HumanoidOptions& options);
+
+/// The same from the user's map and, whatever the names say, by shape; nothing where a must-have bone is
+/// missing.
+std::optional<Bones> find_bones_by_shape(const Character& character, const HumanoidOptions& options);
 
 /// The bones by shape alone: a trunk with two mirrored legs below and two mirrored arms above.
 /// Empty (all -1) when there is none.

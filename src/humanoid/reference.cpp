@@ -107,6 +107,13 @@ Reference upright(const Character& character, const Humanoid& humanoid, Pose pos
   return {turned(character, std::move(pose), shortest_rotation(rise, stands)), stands, false};
 }
 
+/// A bind pose leans like the rest pose above it: its legs are straight, so the whole figure is turned.
+Pose standing_straight(const Character& character, const Humanoid& humanoid, Pose bind, const Vec3& up) {
+  const Vec3 rise = Figure(character, humanoid, bind).rise();
+  return angle(rise, up) < radians(5) ? bind
+                                      : turned(character, std::move(bind), shortest_rotation(rise, up));
+}
+
 /// A rest pose is as good as the neutral pose when the legs are straight and the arms straight.
 bool clean(const Figure& figure, const Vec3& up) {
   return usable(figure) && class_of(figure, up) != RestPoseClass::other && leg_tilt(figure, up) < radians(15);
@@ -145,7 +152,7 @@ Reference find_reference(const Character& character, const Humanoid& humanoid) {
     const Vec3 bind_up = dominant_axis(bound.rise());
     const bool better = usable(bound) && class_of(bound, bind_up) != RestPoseClass::other &&
                         leg_tilt(bound, bind_up) < leg_tilt(figure, up);
-    if (better) return {bind, bind_up, false};
+    if (better) return {standing_straight(character, humanoid, bind, bind_up), bind_up, false};
   }
   const bool has_motion = !character.animations.empty() && !character.animations[0].tracks.empty();
   if (usable(figure) || !has_motion) return upright(character, humanoid, rest, up);

@@ -49,4 +49,20 @@ SkinExtent skin_extent(const Character& character, const std::vector<Affine>& wo
   return extent;
 }
 
+std::vector<char> carries_skin(const Character& character) {
+  std::vector<char> carries(character.skeleton.nodes.size(), 0);
+  for (const MeshPart& part : character.parts) {
+    if (part.skin < 0 || part.joints.empty()) {
+      if (part.node >= 0) carries[part.node] = 1;
+      continue;
+    }
+    for (std::size_t v = 0; v < part.weights.size(); ++v) {
+      const auto& weights = part.weights[v];
+      const auto strongest = std::max_element(weights.begin(), weights.end()) - weights.begin();
+      carries[character.skins[part.skin].joints[part.joints[v][strongest]]] = 1;
+    }
+  }
+  return carries;
+}
+
 }  // namespace ukemi

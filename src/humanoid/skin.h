@@ -20,4 +20,7 @@ struct SkinExtent {
 SkinExtent skin_extent(const Character& character, const std::vector<Affine>& world_from_node,
                        const Vec3& direction, const std::function<bool(int node)>& counts = {});
 
+/// Which nodes carry vertices: most of a skinned one's weight, or a mesh of their own.
+std::vector<char> carries_skin(const Character& character);
+
 }  // namespace ukemi

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "humanoid/bones.h"
+#include "humanoid/skin.h"
 
 namespace ukemi {
 namespace {
@@ -21,8 +22,10 @@ struct Tree {
   std::vector<Vec3> position;
   std::vector<std::vector<int>> children;  // only nodes that may be bones
   std::vector<double> reach;               // length of the longest path below
+  std::vector<char> carries_skin;
 
-  Tree(const Character& character, const Pose& pose) : skeleton(character.skeleton) {
+  Tree(const Character& character, const Pose& pose)
+      : skeleton(character.skeleton), carries_skin(ukemi::carries_skin(character)) {
     const std::vector<Affine> world = world_transforms(skeleton, pose);
     const std::vector<char> skinned = skin_joints(character);
     const bool any_skin = std::count(skinned.begin(), skinned.end(), 1) > 0;
@@ -95,7 +98,7 @@ std::vector<Pair> mirrored_pairs(const Tree& tree, int fork) {
 }
 
 /// The far end of the chain that rises from the arms' fork and is neither arm.
-int head_above(const Tree& tree, int fork, const Pair& arms) {
+int end_above(const Tree& tree, int fork, const Pair& arms) {
   int at = fork, head = -1;
   for (;;) {
     std::vector<int> next;
@@ -107,6 +110,14 @@ int head_above(const Tree& tree, int fork, const Pair& arms) {
     at = head = *std::max_element(next.begin(), next.end(),
                                   [&](int a, int b) { return tree.reach[a] < tree.reach[b]; });
   }
+}
+
+/// That end, or the bone before it where the end carries no skin and only marks the crown.
+int head_above(const Tree& tree, int fork, const Pair& arms) {
+  const int end = end_above(tree, fork, arms);
+  if (end < 0 || tree.carries_skin[end]) return end;
+  const int before = tree.skeleton.nodes[end].parent;
+  return before != fork && tree.carries_skin[before] ? before : end;
 }
 
 struct Shape {
