@@ -128,8 +128,13 @@ Status prepare_files(const Character& character, const BakeSettings& settings, B
     auto png = bake_sheet(character, settings, baked.outcome);
     if (!png) return png.error();
     baked.files.push_back({settings.sheet, std::move(*png)});
-    baked.outcome.timings_s.render = watch.lap();
   }
+  if (!settings.preview.empty()) {
+    auto webp = bake_preview(character, settings, baked.outcome);
+    if (!webp) return webp.error();
+    baked.files.push_back({settings.preview, std::move(*webp)});
+  }
+  baked.outcome.timings_s.render = watch.lap();
   return Done{};
 }
 

@@ -55,7 +55,9 @@ struct BakeSettings {
   std::vector<std::filesystem::path> outputs;
   bool clip_only = false;  // glTF without the mesh
   std::optional<double> bvh_metres_per_unit;
-  std::filesystem::path sheet;   // empty: none
+  std::filesystem::path sheet;    // empty: none
+  std::filesystem::path preview;  // moving; empty: none
+  ThemeKind theme = ThemeKind::light;  // of the pictures
   std::filesystem::path report;  // empty: none
 };
 
@@ -89,7 +91,7 @@ struct OutputFile {
 struct BakedFile {
   BakeOutcome outcome;
   ReducedClip reduced;
-  std::vector<OutputFile> files;  // clips and sheet
+  std::vector<OutputFile> files;  // clips and pictures
   std::string report;             // JSON, format 1
 };
 
@@ -119,7 +121,7 @@ Result<BakeOutcome> bake(const Character& character, const BakeSettings& setting
 Result<BakedFile> bake_loaded(const Character& character, const BakeSettings& settings,
                               Diagnostics& diagnostics);
 
-/// Writes the clips and the sheet of a bake. Errors: output.
+/// Writes the clips and the pictures of a bake. Errors: output.
 Status write_files(BakedFile& baked);
 
 /// Loads, bakes and writes every output. `character` is a file or "mannequin". Nothing is written when

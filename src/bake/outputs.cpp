@@ -69,6 +69,11 @@ Status check_outputs(const std::string& character, const BakeSettings& settings)
     if (const Status status = check_picture_name(settings.sheet); !status) return status.error();
     paths.push_back(settings.sheet);
   }
+  if (!settings.preview.empty()) {
+    if (lower_extension(settings.preview) != ".webp")
+      return usage(settings.preview, "unknown format of a moving picture", "let the name end in .webp");
+    paths.push_back(settings.preview);
+  }
   if (!settings.report.empty()) paths.push_back(settings.report);
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (same_file(paths[i], character))

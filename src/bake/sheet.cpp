@@ -2,13 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <memory>
+
+#include "bake/frames.h"
 #include "bake/impact.h"
+#include "base/numbers.h"
 #include "load/load.h"
 
 namespace ukemi {
 namespace {
 
 constexpr double kThumbnailQuality = 82.0;
+constexpr int kStripCells = 6, kStripCellWidth = 280, kStripCellHeight = 300;
+constexpr double kLevelElevation = radians(14.0);  // of a view that gives only an azimuth
+/// Paper: across, 300 pixels an inch.
+constexpr std::pair<std::string_view, std::array<int, 2>> kPictureSizes[] = {
+    {"thumbnail", {480, 440}}, {"screen", {1920, 1080}}, {"a4", {3508, 2480}}, {"a3", {4961, 3508}}};
 constexpr double kSheetRate = 60.0;  // clips of files are sampled at most this often
 
 std::string blow_text(const BakeSettings& settings, const Scene& scene) {
@@ -32,24 +44,19 @@ std::string blow_text(const BakeSettings& settings, const Scene& scene) {
   return fmt::format("{}: {} kg at {} m/s", what, scene.ball_mass_kg, scene.ball_speed_m_s);
 }
 
-std::vector<std::string> figure_lines(const BakeSettings& settings, const BakeOutcome& outcome) {
+std::vector<Fact> facts_of(const BakeSettings& settings, const BakeOutcome& outcome) {
   const LimitFigures& limits = outcome.simulation.limits;
   const SimulationFigures& figures = outcome.simulation.figures;
-  std::vector<std::string> lines = {
-      blow_text(settings, outcome.scene),
-      fmt::format("{:.2f} m, {:.1f} kg", outcome.humanoid.height_m, outcome.body.mass_kg),
-      fmt::format("outside its range by more than 1 degree: {} of {} samples, at most {:.2f} degrees",
-                  limits.over_1deg, limits.samples, limits.excess_max_deg)};
-  if (figures.rest_time_s) lines.push_back(fmt::format("at rest after {:.2f} s", *figures.rest_time_s));
-  return lines;
-}
-
-Result<std::vector<std::uint8_t>> sheet_png(const Shot& shot, bool shapes) {
-  SheetOptions options;
-  options.shapes = shapes;
-  const auto picture = render_sheet(shot, options);
-  if (!picture) return picture.error();
-  return encode_png(*picture);
+  std::vector<Fact> facts = {
+      {"blow", blow_text(settings, outcome.scene)},
+      {"figure", fmt::format("{:.2f} m, {:.1f} kg", outcome.humanoid.height_m, outcome.body.mass_kg)},
+      {"over 1° outside the range", fmt::format("{} of {} samples", limits.over_1deg, limits.samples)},
+      {"largest excess", fmt::format("{:.2f}°", limits.excess_max_deg)}};
+  if (figures.first_ground_contact_s)
+    facts.push_back({"first ground contact", fmt::format("{:.2f} s", *figures.first_ground_contact_s)});
+  facts.push_back(
+      {"at rest", figures.rest_time_s ? fmt::format("{:.2f} s", *figures.rest_time_s) : "not yet"});
+  return facts;
 }
 
 /// Moves a clip whose floor lies at another height to y = 0, where pictures have theirs.
@@ -76,28 +83,90 @@ Result<Clip> clip_to_draw(const Character& character, const RenderSettings& sett
   return clip;
 }
 
-/// What is drawn beside the mesh, and where.
-struct Shapes {
+/// A file's clip, ready to be drawn. The shot points into it.
+struct Loaded {
+  Character character;
   Humanoid humanoid;
+  Clip clip;
   std::optional<ArticulatedBody> body;
   std::vector<BodyPose> segments;
 };
 
-/// Puts the clip on the floor and finds the segments' shapes where they are wanted.
-Result<Shapes> place(const Character& character, Clip& clip, const RenderSettings& settings,
-                     Diagnostics& diagnostics) {
-  auto humanoid = map_humanoid(character, settings.humanoid, diagnostics);
+/// The segments of every frame, rolled as the bake that made the clip says, if one did.
+std::vector<BodyPose> segments_in(const Loaded& loaded) {
+  const Skeleton& skeleton = loaded.character.skeleton;
+  std::optional<SegmentFrames> stored;
+  for (const Animation& animation : loaded.character.animations)
+    if (animation.name == loaded.clip.name) stored = frames_in_extras(skeleton, animation.extras_json);
+  std::vector<BodyPose> segments;
+  for (const Pose& pose : loaded.clip.frames) {
+    segments.push_back(canonical_segments_of(skeleton, loaded.humanoid, pose));
+    if (!stored) continue;
+    const PerSegment<Quat> rotations = rotations_of(skeleton, *stored, pose);
+    for (int i = 0; i < kSegmentCount; ++i)
+      segments.back()[i].rotation = loaded.humanoid.world_from_file.rotation * rotations[i];
+  }
+  return segments;
+}
+
+Result<std::unique_ptr<Loaded>> load_clip(const std::string& file, const RenderSettings& settings,
+                                          Diagnostics& diagnostics) {
+  const auto path = character_path(file);
+  if (!path) return path.error();
+  auto character = load_character(*path, LoadOptions{}, diagnostics);
+  if (!character) return character.error();
+  auto clip = clip_to_draw(*character, settings);
+  if (!clip) return clip.error();
+  auto humanoid = map_humanoid(*character, settings.humanoid, diagnostics);
   if (!humanoid) return humanoid.error();
-  Shapes shapes{std::move(*humanoid), std::nullopt, {}};
-  put_on_floor(character, shapes.humanoid, floor_of(character, shapes.humanoid, clip.frames), clip);
-  if (!settings.shapes && !character.parts.empty()) return shapes;
-  for (const Pose& pose : clip.frames)
-    shapes.segments.push_back(canonical_segments_of(character.skeleton, shapes.humanoid, pose));
-  auto body = build_body(character, shapes.humanoid, clip.frames.front(), shapes.segments.front(),
-                         BodyOptions{}, diagnostics);
+  auto loaded = std::make_unique<Loaded>(
+      Loaded{std::move(*character), std::move(*humanoid), std::move(*clip), std::nullopt, {}});
+  put_on_floor(loaded->character, loaded->humanoid,
+               floor_of(loaded->character, loaded->humanoid, loaded->clip.frames), loaded->clip);
+  const Overlays& overlays = settings.overlays;
+  if (!overlays.shapes && !overlays.axes && !overlays.ranges && !loaded->character.parts.empty())
+    return loaded;
+  loaded->segments = segments_in(*loaded);
+  auto body = build_body(loaded->character, loaded->humanoid, loaded->clip.frames.front(),
+                         loaded->segments.front(), BodyOptions{}, diagnostics);
   if (!body) return body.error();
-  shapes.body = std::move(*body);
-  return shapes;
+  loaded->body = std::move(*body);
+  return loaded;
+}
+
+/// The frames' largest excess over the ranges, as drawn.
+Fact excess_fact(const Loaded& loaded, const RangeOfMotion& range) {
+  double most = 0.0;
+  std::string_view worst;
+  for (const BodyPose& pose : loaded.segments) {
+    PerSegment<Quat> rotations;
+    for (int i = 0; i < kSegmentCount; ++i) rotations[i] = pose[i].rotation;
+    const PerJoint<SwingTwist> charts = charts_of(range, rotations);
+    for (int j = 0; j < kJointCount; ++j) {
+      if (loaded.body->joints[j].fused || excess(range.joints[j], charts[j]) <= most) continue;
+      most = excess(range.joints[j], charts[j]);
+      worst = name(joint_at(j));
+    }
+  }
+  return {"largest excess", worst.empty() ? "none" : fmt::format("{:.2f}° ({})", degrees(most), worst)};
+}
+
+Shot shot_of(const Loaded& loaded, const RangeOfMotion* range) {
+  Shot shot;
+  shot.character = &loaded.character;
+  shot.humanoid = &loaded.humanoid;
+  shot.clip = &loaded.clip;
+  if (loaded.body) {
+    shot.body = &*loaded.body;
+    shot.segments = &loaded.segments;
+  }
+  shot.range = range;
+  shot.title = fmt::format("{}: {}", loaded.character.name, loaded.clip.name);
+  if (loaded.clip.frames.size() > 1)
+    shot.facts.push_back({"duration", fmt::format("{:.2f} s", loaded.clip.duration_s())});
+  shot.facts.push_back({"height", fmt::format("{:.2f} m", loaded.humanoid.height_m)});
+  if (range != nullptr) shot.facts.push_back(excess_fact(loaded, *range));
+  return shot;
 }
 
 Clip clip_on_floor(const Character& character, const BakeOutcome& outcome) {
@@ -123,7 +192,7 @@ Shot shot_of(const Character& character, const BakeSettings& settings, const Bak
       outcome.scene.kind == SceneKind::fall
           ? fmt::format("{}: falls away from {}", character.name, settings.from)
           : fmt::format("{}: {} hit from {}", character.name, name(outcome.scene.target), settings.from);
-  shot.notes = figure_lines(settings, outcome);
+  shot.facts = facts_of(settings, outcome);
   return shot;
 }
 
@@ -132,7 +201,12 @@ Shot shot_of(const Character& character, const BakeSettings& settings, const Bak
 Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const BakeSettings& settings,
                                              const BakeOutcome& outcome) {
   const Clip clip = clip_on_floor(character, outcome);
-  return sheet_png(shot_of(character, settings, outcome, clip), false);
+  SheetOptions options;
+  options.theme = settings.theme;
+  options.overlays.trail = true;
+  const auto picture = render_sheet(shot_of(character, settings, outcome, clip), options);
+  if (!picture) return picture.error();
+  return encode_png(*picture);
 }
 
 Result<std::vector<std::uint8_t>> bake_thumbnail(const Character& character, const BakeSettings& settings,
@@ -144,29 +218,165 @@ Result<std::vector<std::uint8_t>> bake_thumbnail(const Character& character, con
   return encode_webp(*picture, kThumbnailQuality);
 }
 
-Result<RenderedClip> render_clip(const std::string& file, const RenderSettings& settings,
-                                 Diagnostics& diagnostics) {
-  const auto path = character_path(file);
-  if (!path) return path.error();
-  const auto character = load_character(*path, LoadOptions{}, diagnostics);
-  if (!character) return character.error();
-  auto clip = clip_to_draw(*character, settings);
-  if (!clip) return clip.error();
-  const auto shapes = place(*character, *clip, settings, diagnostics);
-  if (!shapes) return shapes.error();
-  Shot shot;
-  shot.character = &*character;
-  shot.humanoid = &shapes->humanoid;
-  shot.clip = &*clip;
-  if (shapes->body) {
-    shot.body = &*shapes->body;
-    shot.segments = &shapes->segments;
+Result<std::vector<std::uint8_t>> bake_preview(const Character& character, const BakeSettings& settings,
+                                               const BakeOutcome& outcome) {
+  const Clip clip = clip_on_floor(character, outcome);
+  MovingOptions options;
+  options.theme = settings.theme;
+  return render_webp(shot_of(character, settings, outcome, clip), options);
+}
+
+namespace {
+
+Result<Picture> sheet_of(const std::vector<Shot>& shots, const RenderSettings& settings) {
+  SheetOptions options;
+  options.overlays = settings.overlays;
+  options.theme = settings.theme;
+  options.view = settings.view;
+  const bool several = shots.size() > 1;
+  std::size_t frames = 0;
+  for (const Shot& shot : shots) frames = std::max(frames, shot.clip->frames.size());
+  options.cells =
+      std::min(settings.cells.value_or(several ? kStripCells : options.cells), static_cast<int>(frames));
+  if (settings.columns) options.columns = *settings.columns;
+  if (several) {
+    options.cell_width = kStripCellWidth;
+    options.cell_height = kStripCellHeight;
   }
-  shot.title = fmt::format("{}: {}", character->name, clip->name);
-  shot.notes = {fmt::format("{:.2f} s", clip->duration_s())};
-  auto png = sheet_png(shot, settings.shapes);
+  if (settings.size) {
+    const auto [width, height] = *settings.size;
+    auto fitted = several ? fit_strips(options, static_cast<int>(shots.size()), width, height)
+                          : fit_sheet(options, width, height);
+    if (!fitted) return fitted.error();
+    options = *fitted;
+  }
+  if (!several) return render_sheet(shots.front(), options);
+  return render_strips(shots, {fmt::format("{} clips at the same times", shots.size()), options});
+}
+
+MovingOptions moving_options(const RenderSettings& settings) {
+  MovingOptions options;
+  if (settings.size) {
+    options.width = (*settings.size)[0];
+    options.height = (*settings.size)[1];
+  }
+  options.fps = settings.fps;
+  options.speed = settings.speed;
+  options.turn_s = settings.turn_s;
+  options.overlays = settings.overlays;
+  options.theme = settings.theme;
+  options.view = settings.view;
+  return options;
+}
+
+/// "hit_###.png", 7: "hit_007.png".
+std::filesystem::path numbered(const std::filesystem::path& pattern, std::size_t number) {
+  std::string file = pattern.filename().string();
+  const std::size_t first = file.find('#');
+  const std::size_t end = std::min(file.find_first_not_of('#', first), file.size());
+  file.replace(first, end - first, fmt::format("{:0{}}", number, end - first));
+  return pattern.parent_path() / file;
+}
+
+Result<std::vector<OutputFile>> sequence_of(const Shot& shot, const std::filesystem::path& pattern,
+                                            const RenderSettings& settings) {
+  std::vector<OutputFile> files;
+  const Status drawn = render_moving(shot, moving_options(settings), [&](const Picture& picture) -> Status {
+    auto png = encode_png(picture);
+    if (!png) return png.error();
+    files.push_back({numbered(pattern, files.size()), std::move(*png)});
+    return Done{};
+  });
+  if (!drawn) return drawn.error();
+  return files;
+}
+
+Result<std::vector<OutputFile>> pictures_of(const std::vector<Shot>& shots, PictureKind kind,
+                                            const std::filesystem::path& output,
+                                            const RenderSettings& settings) {
+  if (kind == PictureKind::sequence) return sequence_of(shots.front(), output, settings);
+  if (kind == PictureKind::moving) {
+    auto webp = render_webp(shots.front(), moving_options(settings));
+    if (!webp) return webp.error();
+    return std::vector<OutputFile>{{output, std::move(*webp)}};
+  }
+  const auto sheet = sheet_of(shots, settings);
+  if (!sheet) return sheet.error();
+  auto png = encode_png(*sheet);
   if (!png) return png.error();
-  return RenderedClip{clip->name, clip->duration_s(), std::move(*png)};
+  return std::vector<OutputFile>{{output, std::move(*png)}};
+}
+
+Error usage(std::string what, std::string fix) {
+  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+}  // namespace
+
+Result<PictureKind> picture_kind(const std::filesystem::path& output) {
+  std::string extension = output.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool numbered = output.filename().string().find('#') != std::string::npos;
+  if (extension == ".webp" && !numbered) return PictureKind::moving;
+  if (extension == ".png") return numbered ? PictureKind::sequence : PictureKind::sheet;
+  return Error{ErrorKind::usage,
+               output.string(),
+               0,
+               0,
+               "",
+               "unknown picture format",
+               "let the name end in .png (a sheet), _####.png (a picture per frame) or .webp (moving)"};
+}
+
+Result<Rendered> render_files(const std::vector<std::string>& files, const std::filesystem::path& output,
+                              const RenderSettings& settings, Diagnostics& diagnostics) {
+  const auto kind = picture_kind(output);
+  if (!kind) return kind.error();
+  if (files.size() > 1 && *kind != PictureKind::sheet)
+    return usage("a moving picture shows one clip", "name one file, or ask for a sheet: -o NAME.png");
+  std::optional<RangeOfMotion> range;
+  if (settings.overlays.ranges) {
+    auto region = load_range_of_motion(settings.region);
+    if (!region) return region.error();
+    range = std::move(*region);
+  }
+  std::vector<std::unique_ptr<Loaded>> loaded;
+  std::vector<Shot> shots;
+  Rendered rendered;
+  for (const std::string& file : files) {
+    auto clip = load_clip(file, settings, diagnostics);
+    if (!clip) return clip.error();
+    rendered.clips.push_back({file, (*clip)->clip.name, (*clip)->clip.duration_s()});
+    shots.push_back(shot_of(**clip, range ? &*range : nullptr));
+    loaded.push_back(std::move(*clip));
+  }
+  auto pictures = pictures_of(shots, *kind, output, settings);
+  if (!pictures) return pictures.error();
+  rendered.files = std::move(*pictures);
+  return rendered;
+}
+
+Result<ViewAngles> parse_view(std::string_view text) {
+  const auto direction = parse_direction(text);
+  if (!direction) return direction.error();
+  const bool level = text != "above" && text.find(',') == std::string_view::npos;
+  return ViewAngles{direction->azimuth, level ? kLevelElevation : direction->elevation};
+}
+
+Result<std::array<int, 2>> parse_picture_size(std::string_view text) {
+  for (const auto& [word, size] : kPictureSizes)
+    if (text == word) return size;
+  const std::size_t cross = text.find('x');
+  if (cross != std::string_view::npos) {
+    const auto width = number_in(text.substr(0, cross));
+    const auto height = number_in(text.substr(cross + 1));
+    if (width && height && std::min(*width, *height) >= 1.0 && std::max(*width, *height) <= 10000.0 &&
+        *width == std::floor(*width) && *height == std::floor(*height))
+      return std::array<int, 2>{static_cast<int>(*width), static_cast<int>(*height)};
+  }
+  return usage(fmt::format("'{}' is not a size", text),
+               "give thumbnail, screen, a4, a3 or WIDTHxHEIGHT in pixels: 1280x720");
 }
 
 }  // namespace ukemi

@@ -6,6 +6,7 @@
 #include "bake/report.h"
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/picture_options.h"
 #include "cli/settings_options.h"
 
 namespace ukemi {
@@ -27,6 +28,10 @@ void declare_out(Options& options, BakeRequest& request) {
   options.group("out");
   options.paths("-o,--output", settings.outputs, "the clip, as .glb, .gltf or .bvh");
   options.path("--sheet", settings.sheet, "contact sheet, as .png");
+  options.path("--preview", settings.preview, "moving picture, as .webp (640x360, 30 a second)");
+  options.custom(
+      "--theme", "light|dark", [&](const std::string& text) { return take_theme(text, settings.theme); },
+      "colours of the pictures [default light]");
   options.path("--report", settings.report, "what the bake did, as JSON");
   options.flag("--json", request.json, "the same JSON to stdout");
   options.flag("--quiet", request.quiet, "nothing to stdout, no warnings");
@@ -36,8 +41,10 @@ Status check(const BakeRequest& request) {
   const BakeSettings& settings = request.settings;
   if (request.json && request.quiet)
     return usage("--json and --quiet exclude each other", "give one of them");
-  if (settings.outputs.empty() && settings.sheet.empty() && settings.report.empty() && !request.json)
-    return usage("nothing to write", "add -o hit.glb (or .gltf, .bvh), --sheet, --report or --json");
+  if (settings.outputs.empty() && settings.sheet.empty() && settings.preview.empty() &&
+      settings.report.empty() && !request.json)
+    return usage("nothing to write",
+                 "add -o hit.glb (or .gltf, .bvh), --sheet, --preview, --report or --json");
   return Done{};
 }
 
@@ -57,6 +64,7 @@ std::string summary(const BakeRequest& request, const BakedFile& baked) {
                       limits.worst_joint ? fmt::format(" ({})", name(*limits.worst_joint)) : std::string());
   for (const auto& output : request.settings.outputs) text += "wrote " + output.string() + "\n";
   if (!request.settings.sheet.empty()) text += "wrote " + request.settings.sheet.string() + "\n";
+  if (!request.settings.preview.empty()) text += "wrote " + request.settings.preview.string() + "\n";
   if (!request.settings.report.empty()) text += "wrote " + request.settings.report.string() + "\n";
   return text;
 }

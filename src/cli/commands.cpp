@@ -25,7 +25,7 @@ constexpr std::array<Command, 10> kCommands = {{
     {"recipe", "", "prints a commented recipe for batch", recipe_command},
     {"inspect", "FILE", "what is in a file: skeleton, humanoid map, units, clips, range of motion",
      inspect_command},
-    {"render", "FILE", "contact sheet of any clip in a file", render_command},
+    {"render", "FILE...", "contact sheet or moving picture of clips in files", render_command},
     {"review", "DIR", "the web page to judge a folder of reactions by", review_command},
     {"compare", "CHARACTER", "the same random hits with every method of joint restriction", compare_command},
     {"diff", "A B", "compares two clips joint by joint", diff_command},

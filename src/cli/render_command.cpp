@@ -8,43 +8,133 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
+#include "cli/picture_options.h"
 #include "cli/settings_options.h"
 
 namespace ukemi {
 namespace {
 
-Status check_output(const std::filesystem::path& output) {
-  if (output.empty()) return Error{ErrorKind::usage, "", 0, 0, "", "no output", "add -o FILE.png"};
-  if (const Status status = check_picture_name(output); !status) return status.error();
-  return check_writable(output);
+struct RenderRequest {
+  std::vector<std::string> files;
+  std::filesystem::path output;
+  RenderSettings settings;
+};
+
+Error usage(std::string what, std::string fix) {
+  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+template <typename Target>
+auto take_whole(Target& target, const Range& range) {
+  return [&target, range](const std::string& text) -> Status {
+    const auto number = parse_number(text, range);
+    if (!number) return number.error();
+    if (*number != static_cast<int>(*number))
+      return usage(fmt::format("'{}' is not a whole number", text), "");
+    target = static_cast<int>(*number);
+    return Done{};
+  };
+}
+
+template <typename Value, typename Parse>
+auto take_parsed(std::optional<Value>& target, Parse&& parse) {
+  return [&target, parse](const std::string& text) -> Status {
+    const auto value = parse(text);
+    if (!value) return value.error();
+    target = *value;
+    return Done{};
+  };
+}
+
+void declare_look(Options& options, RenderSettings& settings) {
+  options.group("look");
+  options.custom(
+      "--theme", "light|dark", [&](const std::string& text) { return take_theme(text, settings.theme); },
+      "colours [default light]");
+  options.custom(
+      "--view", "DIR", take_parsed(settings.view, parse_view),
+      "where the camera stands: front back left right above, or AZIMUTH[,ELEVATION] in degrees, 90 = "
+      "to the figure's left [default: across the motion]");
+  options.custom(
+      "--size", "SIZE", take_parsed(settings.size, parse_picture_size),
+      "thumbnail, screen, a4, a3 (300 pixels an inch) or WIDTHxHEIGHT in pixels [default: a sheet by "
+      "its cells, a moving picture 640x360]");
+  options.flag("--shapes", settings.overlays.shapes, "the simulated segments' shapes over the mesh");
+  options.flag("--axes", settings.overlays.axes, "each joint's axes: forward red, up green, right blue");
+  options.flag("--rom", settings.overlays.ranges,
+               "each joint's range of motion as a cone: amber near its edge, red outside");
+  options.text("--region", "NAME", settings.region, "whose ranges: human, diamond, box or a TOML file");
+  options.flag("--trail", settings.overlays.trail, "the way of the hips");
+}
+
+void declare_kinds(Options& options, RenderSettings& settings) {
+  options.group("sheet");
+  options.custom("--cells", "N", take_whole(settings.cells, Range{1, 100}),
+                 "moments shown [default 12; 6 a row for several files; 1 to 100]");
+  options.custom("--columns", "N", take_whole(settings.columns, Range{1, 100}),
+                 "cells side by side [default 4; 1 to 100]");
+  options.group("moving picture");
+  options.number("--fps", "HZ", settings.fps, Range{1.0, 60.0}, "pictures a second");
+  options.number("--speed", "X", settings.speed, Range{0.01, 10.0},
+                 "of the clip: 0.25 is four times as slow");
+  options.custom("--turntable", "S",
+                 take_parsed(settings.turn_s,
+                             [](const std::string& text) {
+                               return parse_number(text, Range{0.5, 60.0});
+                             }),
+                 "the camera goes once round in so many seconds [0.5 to 60]");
+}
+
+Status check(const RenderRequest& request) {
+  if (request.files.empty()) return usage("no file", "name a file, or the word mannequin");
+  if (request.output.empty()) return usage("no output", "add -o FILE.png or -o FILE.webp");
+  const auto kind = picture_kind(request.output);
+  if (!kind) return kind.error();
+  const RenderSettings& settings = request.settings;
+  if (*kind != PictureKind::sheet && (settings.cells || settings.columns))
+    return usage("--cells and --columns are for sheets", "ask for -o NAME.png, or leave them out");
+  if (*kind == PictureKind::sheet && settings.turn_s)
+    return usage("--turntable is for moving pictures", "ask for -o NAME.webp or -o NAME_####.png");
+  if (settings.size && settings.columns)
+    return usage("--size and --columns exclude each other", "give one of them");
+  return check_writable(request.output);
+}
+
+std::string summary(const Rendered& rendered) {
+  std::string text;
+  for (const RenderedClip& clip : rendered.clips)
+    text += fmt::format("clip '{}', {:.2f} s\n", clip.clip, clip.duration_s);
+  text += fmt::format("wrote {}", rendered.files.front().path.string());
+  if (rendered.files.size() > 1) text += fmt::format(" to {}", rendered.files.back().path.string());
+  return text + "\n";
 }
 
 }  // namespace
 
 int render_command(const Arguments& arguments) {
-  std::string file;
-  std::filesystem::path output;
-  RenderSettings settings;
-  Options options("render", "draws the contact sheet of a clip");
-  options.argument("FILE", file, "a .glb .gltf .vrm .fbx .dae .bvh file, or the word mannequin");
-  options.path("-o,--output", output, "the picture, as .png");
-  options.text("--clip", "NAME", settings.clip,
+  RenderRequest request;
+  Options options("render", "draws clips: a contact sheet, or a moving picture");
+  options.arguments("FILE", request.files,
+                    "a .glb .gltf .vrm .fbx .dae .bvh file, or the word mannequin; several for a row each");
+  options.path("-o,--output", request.output,
+               "a sheet as .png, a moving picture as .webp, or NAME_####.png for a picture per frame");
+  options.text("--clip", "NAME", request.settings.clip,
                "which clip, by its name or #INDEX [default: the last; the rest pose where there is none]");
-  options.flag("--shapes", settings.shapes, "the simulated segments' shapes in place of the mesh");
-  declare_humanoid_options(options, settings.humanoid);
+  declare_humanoid_options(options, request.settings.humanoid);
+  declare_look(options, request.settings);
+  declare_kinds(options, request.settings);
   const auto outcome = options.parse(arguments);
   if (!outcome) return print_error(outcome.error());
   if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
-  if (const Status status = check_output(output); !status) return print_error(status.error());
+  if (const Status status = check(request); !status) return print_error(status.error());
 
   Diagnostics diagnostics;
-  const auto rendered = render_clip(file, settings, diagnostics);
+  const auto rendered = render_files(request.files, request.output, request.settings, diagnostics);
   print_warnings(diagnostics);
   if (!rendered) return print_error(rendered.error());
-  if (const Status status = write_file(output, rendered->png); !status) return print_error(status.error());
-  return print_result(
-      fmt::format("clip '{}', {:.2f} s\nwrote {}\n", rendered->clip, rendered->duration_s, output.string()),
-      0);
+  for (const OutputFile& file : rendered->files)
+    if (const Status status = write_file(file.path, file.bytes); !status) return print_error(status.error());
+  return print_result(summary(*rendered), 0);
 }
 
 }  // namespace ukemi

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/overlays.h"
+
 namespace ukemi {
 namespace {
 
@@ -143,16 +145,22 @@ std::vector<Rgba> bone_colors(const Shot& shot) {
 
 }  // namespace
 
-Figure::Figure(const Shot& shot, bool shapes)
+Figure::Figure(const Shot& shot, const Overlays& overlays)
     : shot_(shot),
       world_from_file_(file_to_world(shot)),
       joint_nodes_(joint_nodes(shot)),
-      bone_colors_(bone_colors(shot)) {
+      bone_colors_(bone_colors(shot)),
+      overlays_(overlays) {
   const auto visible = [](const MeshPart& part) { return !part.indices.empty(); };
   mesh_ = std::any_of(shot.character->parts.begin(), shot.character->parts.end(), visible);
   const bool can_show_shapes =
       shot.body != nullptr && shot.segments != nullptr && shot.segments->size() == shot.clip->frames.size();
-  shapes_ = can_show_shapes && (shapes || !mesh_);
+  shapes_ = can_show_shapes && (overlays.shapes || !mesh_);
+  overlays_.axes = overlays.axes && can_show_shapes;
+  overlays_.ranges = overlays.ranges && can_show_shapes && shot.range != nullptr;
+  if (!overlays.trail) return;
+  for (std::size_t frame = 0; frame < shot.clip->frames.size(); ++frame)
+    hips_.push_back(world_from_file_ * world(static_cast<int>(frame))[joint_nodes_.front()].translation());
 }
 
 std::vector<Affine> Figure::world(int frame) const {
@@ -205,6 +213,9 @@ FrameGeometry Figure::geometry(int frame) const {
   FrameGeometry result{body(frame)};
   if (mesh_ && shapes_) add_shapes(result.overlay, frame, kOverlayAlpha);
   add_props(result.solid, frame);
+  if (overlays_.trail) add_trail(result.solid, hips_, frame);
+  if (overlays_.axes) add_joint_axes(result.overlay, shot_, frame);
+  if (overlays_.ranges) add_range_cones(result.overlay, shot_, frame);
   return result;
 }
 

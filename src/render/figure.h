@@ -18,7 +18,7 @@ struct FrameGeometry {
 /// Contract: the shot outlives the figure; every frame of the clip has one transform per node.
 class Figure {
  public:
-  Figure(const Shot& shot, bool shapes);
+  Figure(const Shot& shot, const Overlays& overlays);
 
   /// Places of the joints, metres: the humanoid's nodes, else the skins' joints, else all nodes.
   std::vector<Vec3> joints(int frame) const;
@@ -46,6 +46,8 @@ class Figure {
   std::vector<Rgba> bone_colors_;  // per node
   bool mesh_ = false;
   bool shapes_ = false;
+  Overlays overlays_;
+  std::vector<Vec3> hips_;  // per frame, where the trail is drawn
 };
 
 }  // namespace ukemi

@@ -1,5 +1,6 @@
 #include "render/geometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ukemi {
@@ -123,6 +124,34 @@ void add_octahedron(Geometry& geometry, const Vec3& from, const Vec3& to, double
     add_triangle(geometry, corner[4], corner[i], corner[next]);
     add_triangle(geometry, corner[5], corner[next], corner[i]);
   }
+}
+
+void add_tube(Geometry& geometry, const std::vector<Vec3>& points, double radius, const Rgba& color) {
+  constexpr std::uint32_t kSides = 7;
+  if (points.size() < 2) return;
+  const auto first = static_cast<std::uint32_t>(geometry.vertices.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 along = points[std::min(i + 1, points.size() - 1)] - points[i > 0 ? i - 1 : 0];
+    const Quat turn = shortest_rotation(Vec3::UnitY(), along);
+    for (std::uint32_t side = 0; side < kSides; ++side) {
+      const double angle = 2.0 * kPi * side / kSides;
+      const Vec3 out = turn * Vec3(std::cos(angle), 0.0, std::sin(angle));
+      add_vertex(geometry, points[i] + radius * out, out, color);
+    }
+  }
+  for (std::uint32_t ring = 0; ring + 1 < points.size(); ++ring)
+    for (std::uint32_t side = 0; side < kSides; ++side) {
+      const std::uint32_t a = first + ring * kSides + side;
+      const std::uint32_t b = first + ring * kSides + (side + 1) % kSides;
+      add_triangle(geometry, a, a + kSides, b + kSides);
+      add_triangle(geometry, a, b + kSides, b);
+    }
+}
+
+void add_flat_triangle(Geometry& geometry, const std::array<Vec3, 3>& corners, const Rgba& color) {
+  std::array<std::uint32_t, 3> vertex{};
+  for (std::size_t i = 0; i < 3; ++i) vertex[i] = add_vertex(geometry, corners[i], Vec3::Zero(), color);
+  add_triangle(geometry, vertex[0], vertex[1], vertex[2]);
 }
 
 void add_arrow(Geometry& geometry, const Vec3& tip, const Vec3& direction, double length, const Rgba& color) {

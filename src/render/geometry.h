@@ -59,6 +59,10 @@ void add_ball(Geometry& geometry, const Rigid& world_from_ball, double radius, c
 void add_box(Geometry& geometry, const Rigid& world_from_box, const Vec3& size, const Rgba& color);
 /// The bone of animation tools: a stretched octahedron, thickest near `from`.
 void add_octahedron(Geometry& geometry, const Vec3& from, const Vec3& to, double radius, const Rgba& color);
+/// A thin tube along the points.
+void add_tube(Geometry& geometry, const std::vector<Vec3>& points, double radius, const Rgba& color);
+/// One triangle with its own normal, seen from both sides where the surface is.
+void add_flat_triangle(Geometry& geometry, const std::array<Vec3, 3>& corners, const Rgba& color);
 /// Tip at `tip`, pointing along `direction` (unit).
 void add_arrow(Geometry& geometry, const Vec3& tip, const Vec3& direction, double length, const Rgba& color);
 

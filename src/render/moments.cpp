@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace ukemi {
 namespace {
@@ -14,6 +15,9 @@ constexpr double kIdleSpeed_m_s = 0.05;
 // Just after the impact motion counts up to three times: the blow is told by what is still small there.
 constexpr double kImpactWeight = 2.0;
 constexpr double kImpactFade_s = 0.15;
+constexpr double kPeakSpeed_m_s = 0.5;  // a slower clip has no peak worth naming
+constexpr double kPeakOverMean = 1.6;
+constexpr int kSameMoment = 2;     // frames
 constexpr double kStill_m = 0.01;  // of mean way from the mark "rest" to the end: nothing more is to be seen
 
 double weight_at(const Clip& clip, double time_s) {
@@ -110,6 +114,18 @@ std::string phase_at(const Clip& clip, int frame) {
   return phase;
 }
 
+/// Marks the fastest frame where there is motion; beside another mark it is that mark's frame.
+void mark_peak_speed(Clip& clip, const std::vector<std::vector<Vec3>>& points) {
+  const std::vector<double> speeds = mean_speeds(clip, points);
+  const auto peak = std::max_element(speeds.begin(), speeds.end());
+  const double mean = std::accumulate(speeds.begin(), speeds.end(), 0.0) / static_cast<double>(speeds.size());
+  if (*peak < std::max(kPeakSpeed_m_s, kPeakOverMean * mean)) return;
+  int frame = static_cast<int>(peak - speeds.begin());
+  for (const Mark& mark : clip.marks)
+    if (std::abs(frame_at(clip, mark.time_s) - frame) <= kSameMoment) frame = frame_at(clip, mark.time_s);
+  clip.marks.push_back({"peak speed", frame / clip.fps});
+}
+
 /// A rest that lasts to the end is shown by the last frame.
 Clip with_rest_at_end(const Clip& clip, const std::vector<std::vector<Vec3>>& points) {
   Clip marked{clip.name, clip.fps, std::vector<Pose>(clip.frames.size()), clip.marks};
@@ -138,9 +154,22 @@ int halfway_frame(const Clip& clip, const std::vector<std::vector<Vec3>>& points
   return static_cast<int>(std::lower_bound(way.begin() + from, way.end() - 1, half) - way.begin());
 }
 
+std::vector<double> mean_speeds(const Clip& clip, const std::vector<std::vector<Vec3>>& points) {
+  const std::vector<double> way = mean_way(points);
+  std::vector<double> speeds(way.size(), 0.0);
+  for (std::size_t frame = 0; frame < way.size(); ++frame) {
+    const std::size_t before = frame > 1 ? frame - 2 : 0;
+    const std::size_t after = std::min(frame + 1, way.size() - 1);
+    if (after > before)
+      speeds[frame] = (way[after] - way[before]) * clip.fps / static_cast<double>(after - before);
+  }
+  return speeds;
+}
+
 std::vector<Moment> choose_moments(const Clip& original, const std::vector<std::vector<Vec3>>& points,
                                    int count) {
-  const Clip clip = with_rest_at_end(original, points);
+  Clip clip = with_rest_at_end(original, points);
+  mark_peak_speed(clip, points);
   std::vector<int> fixed;
   for (const int frame : wanted_frames(clip))
     if (static_cast<int>(fixed.size()) < count && std::find(fixed.begin(), fixed.end(), frame) == fixed.end())

@@ -14,6 +14,7 @@ inline constexpr Color kCellBorder = hex(0xDDD5C9);
 inline constexpr Color kInk = hex(0x2E2A26);
 inline constexpr Color kSoftInk = hex(0x7D746A);
 inline constexpr Color kAccent = hex(0xC23B22);
+inline constexpr Color kTag = hex(0x7D746A);
 inline constexpr Color kPaper = hex(0xFFFFFF);
 
 struct Fonts {

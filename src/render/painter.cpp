@@ -401,6 +401,8 @@ void Painter::State::draw_front(const Geometry& geometry) const {
   send(geometry);
   gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   gl.Disable(GL_BLEND);
+  gl.Disable(GL_CULL_FACE);
+  set(surface, "alpha_cutoff", -1.0f);
   gl.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(geometry.indices.size()), GL_UNSIGNED_INT, nullptr);
   gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl.DepthFunc(GL_LEQUAL);

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "base/result.h"
 #include "body/body.h"
 #include "humanoid/humanoid.h"
+#include "restrict/range_of_motion.h"
 #include "simulate/trajectory.h"
 
 namespace ukemi {
@@ -28,18 +31,39 @@ Result<std::vector<std::uint8_t>> encode_webp(const Picture& picture, double qua
 
 enum class ThemeKind { light, dark };
 
+/// A figure of a report, as it stands under a title.
+struct Fact {
+  std::string label, value;
+};
+
 /// What is drawn: a clip of a character, with what surrounds it. Pointers may be null and are not owned.
 struct Shot {
   const Character* character = nullptr;
   const Humanoid* humanoid = nullptr;
   const Clip* clip = nullptr;
   const ArticulatedBody* body = nullptr;  // segment shapes: drawn with `shapes`, or where there is no mesh
-  const std::vector<BodyPose>* segments = nullptr;  // one per frame, where shapes are drawn
+  const std::vector<BodyPose>* segments = nullptr;  // one per frame, where shapes, axes or ranges are drawn
+  const RangeOfMotion* range = nullptr;             // drawn with `ranges`
   const std::vector<Prop>* props = nullptr;
   Vec3 impact_point = Vec3::Zero();
   Vec3 impact_direction = Vec3::Zero();  // zero: no arrow
   std::string title;
-  std::vector<std::string> notes;  // lines of figures under the title
+  std::vector<Fact> facts;
+  std::vector<std::string> notes;  // lines under them
+};
+
+/// What is drawn over the figure. Shapes, axes and ranges need the shot's segments.
+struct Overlays {
+  bool shapes = false;  // the simulated segments, see-through
+  bool axes = false;    // of every joint's segment: x forward red, y up green, z to the right blue
+  bool ranges = false;  // each joint's range of motion as a cone: amber near its edge, red outside
+  bool trail = false;   // the way of the hips
+};
+
+/// Where the camera stands, seen from the figure's first frame, radians.
+struct ViewAngles {
+  double azimuth = 0.0;    // 0: in front, pi/2: to the figure's left
+  double elevation = 0.0;  // above its horizon
 };
 
 struct SheetOptions {
@@ -47,8 +71,14 @@ struct SheetOptions {
   int cells = 12;
   int cell_width = 320;
   int cell_height = 360;
-  bool shapes = false;
+  Overlays overlays{};
+  ThemeKind theme = ThemeKind::light;
+  std::optional<ViewAngles> view{};  // default: across the blow, or across the way of the figure
 };
+
+/// Columns and cells that fill a page of about that size best. Errors: usage (less than 240 x 180 or more
+/// than 10000 pixels a side).
+Result<SheetOptions> fit_sheet(SheetOptions options, int page_width, int page_height);
 
 struct ThumbnailOptions {
   int width = 288;
@@ -60,8 +90,41 @@ struct ThumbnailOptions {
 /// the blow. Errors: as render_sheet.
 Result<Picture> render_thumbnail(const Shot& shot, const ThumbnailOptions& options);
 
-/// Contact sheet: the same camera in every cell, each labelled with its time and phase.
+/// Contact sheet: the same camera in every cell, each labelled with its time and phase; below them the speed
+/// of the motion over time and a scale.
 /// Errors: output when no off-screen context can be made.
 Result<Picture> render_sheet(const Shot& shot, const SheetOptions& options);
+
+struct StripsOptions {
+  std::string title;
+  SheetOptions sheet{};  // cells: columns of every row
+};
+
+/// Cells of `rows` clips that fill a page. Errors: as fit_sheet.
+Result<SheetOptions> fit_strips(SheetOptions options, int rows, int page_width, int page_height);
+
+/// Several clips under each other, each a row with its shot's title and facts, at the same times, to the same
+/// scale and from the same side of the figure. Errors: as render_sheet; internal for clips of different
+/// rates.
+Result<Picture> render_strips(const std::vector<Shot>& shots, const StripsOptions& options);
+
+struct MovingOptions {
+  int width = 640;
+  int height = 360;
+  double fps = 30.0;
+  double speed = 1.0;              // of the clip: 0.25 shows it four times as slow
+  std::optional<double> turn_s{};  // the camera goes once round in that time
+  Overlays overlays{};
+  ThemeKind theme = ThemeKind::light;
+  std::optional<ViewAngles> view{};
+};
+
+/// Frame by frame with time and phase; a clip of one frame lasts one turn of the camera. `take` is called for
+/// every frame and ends it all with an error of its own. Errors: as render_sheet; usage (size, rate, a single
+/// frame without a turn, longer than 3600 frames).
+Status render_moving(const Shot& shot, const MovingOptions& options,
+                     const std::function<Status(const Picture&)>& take);
+/// The same as an animated WebP. Errors: as render_moving; output.
+Result<std::vector<std::uint8_t>> render_webp(const Shot& shot, const MovingOptions& options);
 
 }  // namespace ukemi

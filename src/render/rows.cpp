@@ -155,7 +155,7 @@ Result<Picture> render_rows(const std::vector<MarkedShot>& rows, const RowsOptio
   JointPaths together(rows.front().shot.clip->frames.size());
   std::size_t steady = rows.size();  // first row that stays in view
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    figures.emplace_back(rows[r].shot, false);
+    figures.emplace_back(rows[r].shot, Overlays{});
     const JointPaths paths = joint_paths(figures.back(), rows[r].shot);
     if (!stays_near(paths)) continue;
     steady = std::min(steady, r);
@@ -192,7 +192,7 @@ Result<Picture> render_close_up(const MarkedShot& marked, const CloseUpOptions& 
       Painter::make(options.cell_width, options.cell_height, decode_textures(*marked.shot.character));
   if (!painter) return painter.error();
 
-  const Figure figure(marked.shot, false);
+  const Figure figure(marked.shot, {});
   const double aspect = static_cast<double>(options.cell_width) / options.cell_height;
   const JointPaths still(static_cast<std::size_t>(options.frame) + 1, figure.joints(options.frame));
   const Staging whole = set_stage(figure, marked.shot, still, {{options.frame, ""}}, aspect, 0.06);

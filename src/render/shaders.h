@@ -143,11 +143,20 @@ float grid(float step_m, float width_px) {
   return max(cover.x, cover.y);
 }
 
+// A small cross where the lines of whole metres meet.
+float metre_mark() {
+  vec2 away = abs(fract(place - 0.5) - 0.5);
+  vec2 pixel = fwidth(place);
+  vec2 thin = clamp(1.1 + 0.5 - away / pixel, 0.0, 1.0);
+  vec2 near = 1.0 - smoothstep(0.05, 0.06, away);
+  return max(thin.x * near.y, thin.y * near.x) * (1.0 - smoothstep(0.02, 0.08, max(pixel.x, pixel.y)));
+}
+
 void main() {
   float away = distance(place, focus.xy) / focus.z;
   float near = 1.0 - smoothstep(0.5, 2.6, away);
   vec3 color = mix(background.rgb, ground.rgb, near);
-  float lines = max(grid(1.0, 1.3), 0.30 * grid(0.25, 1.0));
+  float lines = max(max(0.8 * grid(1.0, 1.3), 0.30 * grid(0.25, 1.0)), metre_mark());
   color = mix(color, line.rgb, line.a * lines * near);
   vec2 uv = (place - floor_area.xy) / floor_area.z * 0.5 + 0.5;
   vec2 dark = texture(shadow_map, uv).rg;

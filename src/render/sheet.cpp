@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/page.h"
-#include "render/staging.h"
+#include "render/sheet_page.h"
 #include "render/studio.h"
 
 namespace ukemi {
 namespace {
 
 constexpr int kLongestPageSide = 32000;
+constexpr int kShortestCell = 64, kLongestCell = 4096;
+constexpr double kCellAspect = 320.0 / 360.0;
 
 Error usage_error(std::string what, std::string fix) {
   return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
@@ -21,124 +22,151 @@ Status check(const SheetOptions& options) {
     return usage_error(
         fmt::format("a sheet of {} cells in {} columns cannot be drawn", options.cells, options.columns),
         "ask for 1 to 1000 cells in 1 to 100 columns");
-  if (std::min(options.cell_width, options.cell_height) < 64 ||
-      std::max(options.cell_width, options.cell_height) > 4096)
+  if (std::min(options.cell_width, options.cell_height) < kShortestCell ||
+      std::max(options.cell_width, options.cell_height) > kLongestCell)
     return usage_error(
         fmt::format("cells of {} x {} pixels cannot be drawn", options.cell_width, options.cell_height),
         "ask for sides of 64 to 4096 pixels");
   return Done{};
 }
 
-/// Places on the page, pixels. Everything but the cells grows with their width.
+/// Everything but the cells grows with their width.
+double zoom_for(int cell_width) { return std::clamp(cell_width / 320.0, 0.4, 4.0); }
+
+/// Places on the page, pixels.
 class Layout {
  public:
-  Layout(const SheetOptions& options, int cells, std::size_t notes)
-      : options_(options),
-        zoom_(std::clamp(options.cell_width / 320.0, 0.5, 4.0)),
+  Layout(const Pen& pen, const SheetOptions& options, int cells)
+      : pen_(pen),
+        options_(options),
         columns_(std::min(options.columns, cells)),
-        rows_((cells + columns_ - 1) / columns_),
-        header_(scaled(58) + static_cast<int>(notes) * note_line() + scaled(14)) {}
+        rows_((cells + columns_ - 1) / columns_) {}
 
-  int scaled(double pixels) const { return static_cast<int>(std::lround(pixels * zoom_)); }
-  double size(double pixels) const { return pixels * zoom_; }
-  int margin() const { return scaled(36); }
-  int gap() const { return scaled(14); }
-  int label_height() const { return scaled(38); }
-  int note_line() const { return scaled(22); }
-  int width() const { return 2 * margin() + columns_ * options_.cell_width + (columns_ - 1) * gap(); }
-  int height() const { return grid_top() + rows_ * (options_.cell_height + gap()) + scaled(44); }
-  int grid_top() const { return scaled(26) + header_; }
-  int footer_baseline() const { return height() - scaled(26); }
-  Box cell(int i) const {
+  int margin() const { return pen_.scaled(36); }
+  int gap() const { return pen_.scaled(14); }
+  int room() const { return columns_ * options_.cell_width + (columns_ - 1) * gap(); }
+  int width() const { return 2 * margin() + room(); }
+  int grid_top(int heading) const { return margin() + heading; }
+  int grid_bottom(int heading) const {
+    return grid_top(heading) + rows_ * (options_.cell_height + gap()) - gap();
+  }
+  int height(int heading, bool timeline) const {
+    return grid_bottom(heading) + pen_.scaled(16) + (timeline ? timeline_height(pen_) : 0) + pen_.scaled(48);
+  }
+  Box cell(int heading, int i) const {
     return {margin() + i % columns_ * (options_.cell_width + gap()),
-            grid_top() + i / columns_ * (options_.cell_height + gap()), options_.cell_width,
+            grid_top(heading) + i / columns_ * (options_.cell_height + gap()), options_.cell_width,
             options_.cell_height};
   }
 
  private:
-  SheetOptions options_;
-  double zoom_;
-  int columns_, rows_, header_;
+  const Pen& pen_;
+  const SheetOptions& options_;
+  int columns_, rows_;
 };
 
-void draw_header(Picture& page, const Layout& layout, const Fonts& fonts, const Shot& shot) {
-  const double room = layout.width() - 2.0 * layout.margin();
+Heading heading_of(const Shot& shot) {
   const std::string fallback =
       shot.clip->name.empty() ? shot.character->name : shot.character->name + " · " + shot.clip->name;
-  const std::string& title = shot.title.empty() ? fallback : shot.title;
-  int baseline = layout.scaled(58);
-  fonts.bold.draw(page, layout.margin(), baseline, fonts.bold.fitted(title, layout.size(25), room),
-                  layout.size(25), kInk);
-  baseline += layout.scaled(8);
-  for (const std::string& note : shot.notes) {
-    baseline += layout.note_line();
-    fonts.regular.draw(page, layout.margin(), baseline, fonts.regular.fitted(note, layout.size(14), room),
-                       layout.size(14), kSoftInk);
+  return {shot.title.empty() ? fallback : shot.title, shot.facts, shot.notes};
+}
+
+void draw_cells(Picture& page, const Pen& pen, const Layout& layout, int heading, const Studio& studio,
+                const std::vector<Moment>& moments, const Staging& staging) {
+  const double radius = pen.size(8);
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const int frame = moments[i].frame;
+    const Box cell = layout.cell(heading, static_cast<int>(i));
+    paste(page, studio.painter->draw(studio.geometry(frame), staging.at(frame)), cell.x, cell.y, radius);
+    outline(page, cell, radius, pen.theme.border);
+    if (studio.joints.size() > 1)
+      draw_label(page, pen, cell, fmt::format("{:.2f} s", frame / studio.shot.clip->fps), moments[i].phase);
   }
 }
 
-void draw_footer(Picture& page, const Layout& layout, const Fonts& fonts, const Shot& shot, bool follows) {
-  const double size = layout.size(13);
-  const int baseline = layout.footer_baseline();
-  const int square = layout.scaled(12);
-  const Box icon{layout.margin(), baseline - square + layout.scaled(1), square, square};
-  outline(page, icon, 0.0, kSoftInk);
-  fonts.regular.draw(page, layout.margin() + square + layout.scaled(8), baseline,
-                     follows ? "grid 1 m  ·  the camera follows" : "grid 1 m", size, kSoftInk);
+void draw_footer(Picture& page, const Pen& pen, const Layout& layout, const Shot& shot,
+                 const Staging& staging, int cell_height) {
+  const int baseline = page.height - pen.scaled(24);
+  const double scale_end =
+      draw_scale(page, pen, staging.stage, cell_height, layout.margin(), baseline,
+                 staging.follows() ? "grid 1 m and 0.25 m  ·  the camera follows" : "grid 1 m and 0.25 m");
   const std::size_t frames = shot.clip->frames.size();
-  const std::string figures = fmt::format("{:.2f} s  ·  {} frame{} at {:.4g} fps", shot.clip->duration_s(),
-                                          frames, frames == 1 ? "" : "s", shot.clip->fps);
-  fonts.regular.draw(page, layout.width() - layout.margin() - fonts.regular.width(figures, size), baseline,
-                     figures, size, kSoftInk);
+  const std::string text = fmt::format("{:.2f} s  ·  {} frame{} at {:.4g} fps", shot.clip->duration_s(),
+                                       frames, frames == 1 ? "" : "s", shot.clip->fps);
+  const double size = pen.size(13);
+  const double left = layout.width() - layout.margin() - pen.fonts.regular.width(text, size);
+  if (frames > 1 && left > scale_end + pen.size(20))
+    pen.fonts.regular.draw(page, left, baseline, text, size, pen.theme.soft_ink);
 }
 
-void draw_label(Picture& page, const Layout& layout, const Fonts& fonts, const Box& cell, double time_s,
-                const std::string& phase) {
-  const int left = cell.x + layout.scaled(14);
-  const int baseline = cell.y + layout.scaled(27);
-  const double after =
-      fonts.bold.draw(page, left, baseline, fmt::format("{:.2f} s", time_s), layout.size(15), kInk);
-  if (phase.empty()) return;
-  const double size = layout.size(12);
-  const int pad = layout.scaled(8);
-  const int tag_left = static_cast<int>(std::lround(after)) + layout.scaled(10);
-  const std::string text = fonts.regular.fitted(phase, size, cell.x + cell.width - tag_left - 3.0 * pad);
-  const Box tag{tag_left, baseline - layout.scaled(15),
-                static_cast<int>(std::ceil(fonts.regular.width(text, size))) + 2 * pad, layout.scaled(21)};
-  const bool impact = phase.find("impact") != std::string::npos;
-  fill(page, tag, 0.5 * tag.height, impact ? kAccent : kSoftInk);
-  fonts.regular.draw(page, tag.x + pad, baseline, text, size, kPaper);
+/// Cells in so many columns that fill the page; what does not fit comes out too small.
+SheetOptions in_columns(SheetOptions options, int columns, int page_width, int page_height) {
+  const int rows = (options.cells + columns - 1) / columns;
+  double zoom = 1.0;
+  for (int pass = 0; pass < 4; ++pass) {
+    options.cell_width = static_cast<int>((page_width - zoom * (72.0 + 14.0 * (columns - 1))) / columns);
+    zoom = zoom_for(options.cell_width);
+  }
+  const double around = zoom * (36.0 + 34.0 + 48.0 + 14.0 + 16.0 + 82.0 + 48.0 + 14.0 * (rows - 1));
+  options.columns = columns;
+  options.cell_height = static_cast<int>((page_height - around) / rows);
+  return options;
 }
 
 }  // namespace
 
+Result<SheetOptions> fit_sheet(SheetOptions options, int page_width, int page_height) {
+  if (page_width < 240 || page_height < 180 || std::max(page_width, page_height) > 10000)
+    return usage_error(fmt::format("a sheet of {} x {} pixels cannot be drawn", page_width, page_height),
+                       "ask for 240 x 180 to 10000 x 10000 pixels");
+  std::optional<SheetOptions> best;
+  double best_error = 0.0;
+  for (int columns = 1; columns <= options.cells; ++columns) {
+    const SheetOptions tried = in_columns(options, columns, page_width, page_height);
+    if (!check(tried)) continue;
+    const double error = std::abs(std::log(tried.cell_width / (kCellAspect * tried.cell_height)));
+    if (best && error >= best_error) continue;
+    best = tried;
+    best_error = error;
+  }
+  if (!best)
+    return usage_error(
+        fmt::format("{} cells do not fit {} x {} pixels", options.cells, page_width, page_height),
+        "ask for fewer cells or a larger sheet");
+  return *best;
+}
+
 Result<Picture> render_sheet(const Shot& shot, const SheetOptions& options) {
   if (const Status status = check(options); !status) return status.error();
-  auto studio = open_studio(shot, options.shapes, options.cell_width, options.cell_height);
+  auto studio = study(shot, options.overlays);
   if (!studio) return studio.error();
-
-  const std::vector<Moment> moments = choose_moments(*shot.clip, studio->joints, options.cells);
-  const Layout layout(options, static_cast<int>(moments.size()), shot.notes.size());
-  if (std::max(layout.width(), layout.height()) > kLongestPageSide)
-    return usage_error(fmt::format("a sheet of {} x {} pixels is too large", layout.width(), layout.height()),
-                       "ask for fewer or smaller cells");
   const auto fonts = open_fonts();
   if (!fonts) return fonts.error();
 
+  const std::vector<Moment> moments = choose_moments(*shot.clip, studio->joints, options.cells);
+  const Pen pen{*fonts, theme(options.theme), zoom_for(options.cell_width)};
+  const Layout layout(pen, options, static_cast<int>(moments.size()));
+  const Heading heading = heading_of(shot);
+  const int top = heading_height(pen, heading, layout.room());
+  const Timeline timeline{mean_speeds(*shot.clip, studio->joints), shot.clip->fps, moments};
+  const int height = layout.height(top, timeline.speeds.size() > 1);
+  if (std::max(layout.width(), height) > kLongestPageSide)
+    return usage_error(fmt::format("a sheet of {} x {} pixels is too large", layout.width(), height),
+                       "ask for fewer or smaller cells");
+  if (const Status status = equip(*studio, options.cell_width, options.cell_height); !status)
+    return status.error();
+
   const Staging staging = set_stage(studio->figure, shot, studio->joints, moments,
                                     static_cast<double>(options.cell_width) / options.cell_height,
-                                    static_cast<double>(layout.label_height()) / options.cell_height);
-  Picture page = blank(layout.width(), layout.height(), kPage);
-  draw_header(page, layout, *fonts, shot);
-  draw_footer(page, layout, *fonts, shot, staging.follows());
-  for (std::size_t i = 0; i < moments.size(); ++i) {
-    const int frame = moments[i].frame;
-    const Box cell = layout.cell(static_cast<int>(i));
-    const double radius = layout.size(8);
-    paste(page, studio->painter->draw(studio->geometry(frame), staging.at(frame)), cell.x, cell.y, radius);
-    outline(page, cell, radius, kCellBorder);
-    draw_label(page, layout, *fonts, cell, frame / shot.clip->fps, moments[i].phase);
-  }
+                                    static_cast<double>(label_height(pen)) / options.cell_height,
+                                    {.view = options.view, .theme = options.theme});
+  Picture page = blank(layout.width(), height, pen.theme.page);
+  draw_heading(page, pen, heading, layout.margin(), layout.margin(), layout.room());
+  draw_cells(page, pen, layout, top, *studio, moments, staging);
+  draw_timeline(
+      page, pen, timeline,
+      {layout.margin(), layout.grid_bottom(top) + pen.scaled(16), layout.room(), timeline_height(pen)});
+  draw_footer(page, pen, layout, shot, staging, options.cell_height);
   return page;
 }
 

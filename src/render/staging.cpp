@@ -11,6 +11,7 @@ constexpr double kMargin = 0.07;         // of half the picture
 constexpr double kFollow = 1.7;          // the camera follows where it would else stand this much farther off
 constexpr double kFlesh_m = 0.07;        // about a joint, for frames whose skin is not looked at
 constexpr double kFloorSearch_m = 0.25;  // a lowest point this near to y = 0 stands on y = 0
+constexpr int kViewsAround = 12;
 constexpr double kArrow_m = 0.42;
 constexpr double kArrowTime_s = 0.06;
 const Rgba kArrowColor = srgb(0xC23B22);
@@ -122,7 +123,13 @@ std::vector<Vec3> floor_ways(const JointPaths& joints) {
 
 }  // namespace
 
-Quat telling_side(const Figure& figure, const Shot& shot, const JointPaths& joints) {
+Quat telling_side(const Figure& figure, const Shot& shot, const JointPaths& joints,
+                  const std::optional<ViewAngles>& view) {
+  if (view) {
+    const Vec3 facing = figure.facing(0);
+    const double front = facing.isZero() ? 0.0 : std::atan2(facing.x(), facing.z());
+    return look(front + view->azimuth, view->elevation);
+  }
   const Vec3 back = side_to_look_from(main_direction(shot, joints), figure.facing(0));
   return look(std::atan2(back.x(), back.z()), kElevation);
 }
@@ -137,16 +144,23 @@ Stage stage_about(const Camera& camera, const Eigen::AlignedBox3d& seen) {
 }
 
 Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
-                  const std::vector<Moment>& moments, double aspect, double top) {
+                  const std::vector<Moment>& moments, double aspect, double top, const Viewpoint& viewpoint) {
   Camera camera;
   camera.aspect = aspect;
-  camera.world_from_camera = telling_side(figure, shot, joints);
+  camera.world_from_camera = telling_side(figure, shot, joints, viewpoint.view);
 
   const auto frame_for = [&](const std::vector<Vec3>& shifts, Eigen::AlignedBox3d& all) {
     Framing framing(camera, {kMargin, kMargin, kMargin, std::max(kMargin, 2.0 * top)});
     each_point(figure, shot, joints, moments, shifts, [&](const Vec3& point, double radius) {
-      framing.add(point, radius);
       all.extend(point);
+      if (!viewpoint.all_around) framing.add(point, radius);
+    });
+    if (!viewpoint.all_around) return framing.fit();
+    each_point(figure, shot, joints, moments, shifts, [&](const Vec3& point, double radius) {
+      for (int i = 0; i < kViewsAround; ++i) {
+        const Eigen::AngleAxisd turn(2.0 * kPi * i / kViewsAround, Vec3::UnitY());
+        framing.add(all.center() + turn * (point - all.center()), radius);
+      }
     });
     return framing.fit();
   };
@@ -162,6 +176,7 @@ Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& join
   const bool follow = distance(still, all) > kFollow * distance(moving, following);
   if (follow) staging.shifts = ways;
   staging.stage = follow ? stage_about(moving, following) : stage_about(still, all);
+  staging.stage.theme = theme(viewpoint.theme);
   return staging;
 }
 

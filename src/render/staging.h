@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "render/figure.h"
@@ -23,15 +24,23 @@ struct Staging {
 };
 
 /// The way the camera looks, and a stage whose camera stands where `framing` put it; `seen`: what it holds.
-Quat telling_side(const Figure& figure, const Shot& shot, const JointPaths& joints);
+Quat telling_side(const Figure& figure, const Shot& shot, const JointPaths& joints,
+                  const std::optional<ViewAngles>& view = {});
 Stage stage_about(const Camera& camera, const Eigen::AlignedBox3d& seen);
+
+struct Viewpoint {
+  std::optional<ViewAngles> view{};
+  bool all_around = false;  // far enough for a camera that goes round the middle of the motion
+  ThemeKind theme = ThemeKind::light;
+};
 
 /// One view for all moments: the camera looks across the blow (or, without one, across the way), turned
 /// towards the figure's front, and holds all joints of all frames and all that the moments show. It stands
 /// still unless the figure would become much smaller than with a camera that follows it. Top: share of the
 /// picture's height that is kept free for labels.
 Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
-                  const std::vector<Moment>& moments, double aspect, double top);
+                  const std::vector<Moment>& moments, double aspect, double top,
+                  const Viewpoint& viewpoint = {});
 
 /// The arrow of the blow: it ends at the impact point, or behind the ball that touches it there.
 /// Shown shortly before and after the mark "impact" only.

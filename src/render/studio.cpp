@@ -50,15 +50,26 @@ FrameGeometry Studio::geometry(int frame) const {
   return result;
 }
 
-Result<Studio> open_studio(const Shot& shot, bool shapes, int width, int height) {
+Result<Studio> study(const Shot& shot, const Overlays& overlays) {
   if (const Status status = check(shot); !status) return status.error();
-  Studio studio{shot, Figure(shot, shapes), {}, nullptr};
+  Studio studio{shot, Figure(shot, overlays), {}, nullptr};
   for (std::size_t frame = 0; frame < shot.clip->frames.size(); ++frame)
     studio.joints.push_back(studio.figure.joints(static_cast<int>(frame)));
   if (const Status status = check_finite(shot, studio.joints); !status) return status.error();
-  auto painter = Painter::make(width, height, decode_textures(*shot.character));
+  return studio;
+}
+
+Status equip(Studio& studio, int width, int height) {
+  auto painter = Painter::make(width, height, decode_textures(*studio.shot.character));
   if (!painter) return painter.error();
   studio.painter = std::move(*painter);
+  return Done{};
+}
+
+Result<Studio> open_studio(const Shot& shot, const Overlays& overlays, int width, int height) {
+  auto studio = study(shot, overlays);
+  if (!studio) return studio;
+  if (const Status status = equip(*studio, width, height); !status) return status.error();
   return studio;
 }
 

@@ -18,8 +18,13 @@ struct Studio {
   FrameGeometry geometry(int frame) const;
 };
 
-/// Pictures of the given size. Contract: the shot outlives the studio. Errors: input (a clip without frames,
-/// of another skeleton, with a joint that is nowhere); output when no off-screen context can be made.
-Result<Studio> open_studio(const Shot& shot, bool shapes, int width, int height);
+/// Everything but the painter. Contract: the shot outlives the studio. Errors: input (a clip without frames,
+/// of another skeleton, with a joint that is nowhere).
+Result<Studio> study(const Shot& shot, const Overlays& overlays);
+/// The painter, of pictures of the given size; one at a time may live. Errors: output when no off-screen
+/// context can be made.
+Status equip(Studio& studio, int width, int height);
+/// Both.
+Result<Studio> open_studio(const Shot& shot, const Overlays& overlays, int width, int height);
 
 }  // namespace ukemi

@@ -8,7 +8,7 @@ constexpr double kFree = 0.06;  // of half the picture, at its edges
 }  // namespace
 
 Result<Picture> render_thumbnail(const Shot& shot, const ThumbnailOptions& options) {
-  const auto studio = open_studio(shot, false, options.width, options.height);
+  const auto studio = open_studio(shot, {}, options.width, options.height);
   if (!studio) return studio.error();
   const Figure& figure = studio->figure;
   const int frame = halfway_frame(*shot.clip, studio->joints);

@@ -137,4 +137,25 @@ std::vector<Prop> boxy_ball(const Clip& clip) {
   return {ball};
 }
 
+BoxyScene::BoxyScene() {
+  shot.character = &character;
+  shot.clip = &clip;
+  shot.props = &props;
+  shot.impact_point = {0.0, 1.30, 0.11};
+  shot.impact_direction = {0.0, 0.0, -1.0};
+  shot.title = "boxy, hit on the chest from the front";
+  shot.facts = {{"blow", "medicine ball, 5 kg at 6 m/s"}};
+}
+
+int differing_pixels(const Picture& a, const Picture& b, int tolerance) {
+  int count = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
+    int most = 0;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      most = std::max(most, std::abs(a.rgba[i + channel] - b.rgba[i + channel]));
+    count += most > tolerance;
+  }
+  return count;
+}
+
 }  // namespace ukemi

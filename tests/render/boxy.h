@@ -3,6 +3,7 @@
 
 #include "base/animation.h"
 #include "base/character.h"
+#include "render/render.h"
 #include "simulate/trajectory.h"
 
 namespace ukemi {
@@ -13,5 +14,20 @@ Character boxy_character();
 Clip boxy_fall(const Character& character, int frames);
 /// The ball that strikes it, one pose per frame of the clip.
 std::vector<Prop> boxy_ball(const Clip& clip);
+
+/// All of it, ready to be drawn.
+struct BoxyScene {
+  Character character = boxy_character();
+  Clip clip = boxy_fall(character, 46);
+  std::vector<Prop> props = boxy_ball(clip);
+  Shot shot;
+
+  BoxyScene();
+  BoxyScene(const BoxyScene&) = delete;
+  BoxyScene& operator=(const BoxyScene&) = delete;
+};
+
+/// Pixels of which a channel differs by more than `tolerance`. Contract: pictures of the same size.
+int differing_pixels(const Picture& a, const Picture& b, int tolerance);
 
 }  // namespace ukemi

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace ukemi {
 namespace {
 
@@ -75,6 +78,28 @@ TEST(Moments, prefer_the_impact_when_there_is_no_room) {
   clip.marks = {{"first_ground_contact", 0.2}, {"impact", 0.5}, {"rest", 0.9}};
   EXPECT_EQ(frames_of(choose_moments(clip, points, 3)), (std::vector{0, 15, 30}));
   EXPECT_EQ(frames_of(choose_moments(clip, points, 1)), (std::vector{0}));
+}
+
+TEST(Moments, name_the_fastest_frame) {
+  auto [clip, points] =
+      motion(91, [](int frame) { return 0.002 * frame + 0.5 / (1.0 + std::exp(-0.6 * (frame - 40))); });
+  const std::vector<Moment> moments = choose_moments(clip, points, 8);
+  const auto peak = std::find_if(moments.begin(), moments.end(),
+                                 [](const Moment& moment) { return moment.phase == "peak speed"; });
+  ASSERT_NE(peak, moments.end());
+  EXPECT_NEAR(peak->frame, 40, 1);
+  clip.marks = {{"first_ground_contact", 41 / 30.0}};
+  const std::vector<Moment> again = choose_moments(clip, points, 8);
+  EXPECT_TRUE(std::any_of(again.begin(), again.end(), [](const Moment& moment) {
+    return moment.frame == 41 && moment.phase == "first ground contact, peak speed";
+  }));
+}
+
+TEST(Moments, half_of_the_way_is_counted_from_the_impact) {
+  auto [clip, points] = motion(101, [](int frame) { return 0.1 * frame; });
+  EXPECT_EQ(halfway_frame(clip, points), 50);
+  clip.marks = {{"impact", 2.0}};
+  EXPECT_EQ(halfway_frame(clip, points), 80);
 }
 
 TEST(Moments, of_a_short_clip_are_all_its_frames_once) {

@@ -12,24 +12,8 @@
 namespace ukemi {
 namespace {
 
-struct Scene {
-  Character character = boxy_character();
-  Clip clip = boxy_fall(character, 46);
-  std::vector<Prop> props = boxy_ball(clip);
-  Shot shot;
+struct Scene : BoxyScene {
   SheetOptions small{.columns = 3, .cells = 6, .cell_width = 160, .cell_height = 180};
-
-  Scene() {
-    shot.character = &character;
-    shot.clip = &clip;
-    shot.props = &props;
-    shot.impact_point = {0.0, 1.30, 0.11};
-    shot.impact_direction = {0.0, 0.0, -1.0};
-    shot.title = "boxy, hit on the chest from the front";
-    shot.notes = {"medicine ball, 5 kg at 6 m/s"};
-  }
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
 
   Picture draw() const {
     const auto sheet = render_sheet(shot, small);
@@ -98,7 +82,7 @@ TEST(Sheet, has_the_size_of_its_cells) {
   EXPECT_LT(scene.draw().width, sheet.width) << "two frames fill two columns";
 }
 
-TEST(Sheet, says_title_notes_time_and_phase) {
+TEST(Sheet, says_title_figures_time_and_phase) {
   Scene scene;
   const Picture sheet = scene.draw();
   Picture difference;
@@ -107,9 +91,9 @@ TEST(Sheet, says_title_notes_time_and_phase) {
   scene.shot.title = "boxy, hit on the chest from the back";
   EXPECT_GT(changed(), 50);
   scene.shot.title = "boxy, hit on the chest from the front";
-  scene.shot.notes[0] = "medicine ball, 5 kg at 9 m/s";
+  scene.shot.facts[0].value = "medicine ball, 5 kg at 9 m/s";
   EXPECT_GT(changed(), 3);
-  scene.shot.notes[0] = "medicine ball, 5 kg at 6 m/s";
+  scene.shot.facts[0].value = "medicine ball, 5 kg at 6 m/s";
   scene.clip.marks[1].name = "contact";
   scene.shot.impact_direction.setZero();
   Picture other = scene.draw();
@@ -119,7 +103,7 @@ TEST(Sheet, says_title_notes_time_and_phase) {
 
 TEST(Sheet, camera_holds_all_joints_of_all_frames) {
   const Scene scene;
-  const Figure figure(scene.shot, false);
+  const Figure figure(scene.shot, {});
   JointPaths joints;
   for (int frame = 0; frame < 46; ++frame) joints.push_back(figure.joints(frame));
   for (const double aspect : {0.5, 0.9, 2.0}) {
@@ -143,7 +127,7 @@ TEST(Sheet, camera_follows_a_figure_that_goes_far) {
   scene.shot.impact_direction.setZero();
   for (std::size_t frame = 0; frame < scene.clip.frames.size(); ++frame)
     scene.clip.frames[frame][0].translation.x() += 0.3 * static_cast<double>(frame);
-  const Figure figure(scene.shot, false);
+  const Figure figure(scene.shot, {});
   JointPaths joints;
   for (int frame = 0; frame < 46; ++frame) joints.push_back(figure.joints(frame));
   const Staging staging =
@@ -167,7 +151,7 @@ TEST(Sheet, camera_follows_a_figure_that_goes_far) {
 
 TEST(Sheet, is_seen_across_the_blow_running_from_left_to_right) {
   Scene scene;
-  const Figure figure(scene.shot, false);
+  const Figure figure(scene.shot, {});
   const JointPaths joints{figure.joints(0)};
   for (const Vec3& blow : {Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(-0.6, 0.0, 0.8)}) {
     scene.shot.impact_direction = blow;
@@ -183,7 +167,7 @@ TEST(Sheet, shows_the_front_of_the_figure) {
   // The boxy figure looks along +z; segments have x in front.
   humanoid.node_from_segment[index(Segment::pelvis)] = Quat(Eigen::AngleAxisd(-0.5 * kPi, Vec3::UnitY()));
   scene.shot.humanoid = &humanoid;
-  const Figure figure(scene.shot, false);
+  const Figure figure(scene.shot, {});
   EXPECT_LT((figure.facing(0) - Vec3::UnitZ()).norm(), 1e-12);
   for (const Vec3& blow : {Vec3(0, 0, -1), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)}) {
     scene.shot.impact_direction = blow;
@@ -192,6 +176,77 @@ TEST(Sheet, shows_the_front_of_the_figure) {
     EXPECT_GT(to_camera.z(), 0.4) << "blow " << blow.transpose();
     EXPECT_LT(std::abs(to_camera.dot(blow)), 0.6) << "not along the blow " << blow.transpose();
   }
+}
+
+TEST(Sheet, is_dark_in_the_dark_theme) {
+  Scene scene;
+  EXPECT_GT(scene.draw().rgba[0], 200);
+  scene.small.theme = ThemeKind::dark;
+  EXPECT_LT(scene.draw().rgba[0], 60);
+}
+
+TEST(Sheet, fills_the_page_that_is_asked_for) {
+  Scene scene;
+  for (const auto& [width, height] : {std::pair{480, 440}, {1000, 700}, {700, 1000}, {1600, 900}}) {
+    const auto options = fit_sheet(scene.small, width, height);
+    ASSERT_TRUE(options) << options.error().message();
+    const auto sheet = render_sheet(scene.shot, *options);
+    ASSERT_TRUE(sheet) << sheet.error().message();
+    EXPECT_NEAR(sheet->width, width, 0.03 * width);
+    EXPECT_NEAR(sheet->height, height, 0.12 * height) << width << " x " << height;
+    EXPECT_LE(sheet->height, height + 3);
+  }
+  EXPECT_FALSE(fit_sheet(scene.small, 100, 700));
+  EXPECT_FALSE(fit_sheet({.cells = 1000}, 480, 440));
+}
+
+TEST(Sheet, is_seen_from_where_it_is_asked_to) {
+  Scene scene;
+  const Figure figure(scene.shot, {});
+  const JointPaths joints{figure.joints(0)};
+  for (const double azimuth : {0.0, 1.0, -2.0}) {
+    const Viewpoint viewpoint{.view = ViewAngles{azimuth, 0.3}};
+    const Camera camera = set_stage(figure, scene.shot, joints, {{0, ""}}, 1.0, 0.1, viewpoint).stage.camera;
+    const Vec3 to_camera = camera.world_from_camera * Vec3::UnitZ();
+    EXPECT_NEAR(std::atan2(to_camera.x(), to_camera.z()), azimuth, 1e-9);
+    EXPECT_NEAR(std::asin(to_camera.y()), 0.3, 1e-9);
+  }
+}
+
+TEST(Strips, have_a_row_for_each_clip_and_hold_the_one_that_ends_first) {
+  const BoxyScene long_one;
+  BoxyScene short_one;
+  short_one.clip.frames.resize(20);
+  StripsOptions options;
+  options.sheet.cells = 4;
+  options.sheet.cell_width = 120;
+  options.sheet.cell_height = 130;
+  const auto one = render_strips({long_one.shot}, options);
+  const auto two = render_strips({long_one.shot, short_one.shot}, options);
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(one->width, two->width);
+  EXPECT_GT(two->height, one->height + 130);
+  EXPECT_LT(two->height, one->height + 190);
+}
+
+TEST(Strips, fill_the_page_that_is_asked_for) {
+  const BoxyScene scene;
+  StripsOptions options;
+  options.sheet.cells = 5;
+  const auto sheet = fit_strips(options.sheet, 2, 900, 480);
+  ASSERT_TRUE(sheet) << sheet.error().message();
+  options.sheet = *sheet;
+  const auto picture = render_strips({scene.shot, scene.shot}, options);
+  ASSERT_TRUE(picture);
+  EXPECT_NEAR(picture->width, 900, 20);
+  EXPECT_NEAR(picture->height, 480, 20);
+}
+
+TEST(Strips, of_clips_of_different_rates_are_refused) {
+  const BoxyScene scene;
+  BoxyScene other;
+  other.clip.fps = 60.0;
+  EXPECT_FALSE(render_strips({scene.shot, other.shot}, {}));
 }
 
 TEST(Sheet, of_an_empty_clip_is_an_error) {
