@@ -106,7 +106,8 @@ Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Chara
   }
   const SegmentFrames frames =
       segment_frames(character.skeleton, outcome.humanoid, outcome.start.pose, outcome.start.segments);
-  const GltfOptions options{settings.clip_only, animation_extras(character.skeleton, frames)};
+  const GltfOptions options{settings.clip_only,
+                            animation_extras(character.skeleton, frames, outcome.clip.marks)};
   if (format == OutputFormat::glb) return write_glb(character, outcome.humanoid, reduced, options);
   const auto text = write_gltf(character, outcome.humanoid, reduced, options);
   if (!text) return text.error();

@@ -4,7 +4,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "base/animation.h"
 #include "base/math.h"
 #include "base/segments.h"
 #include "base/skeleton.h"
@@ -27,10 +29,14 @@ SegmentFrames segment_frames(const Skeleton& skeleton, const Humanoid& humanoid,
 PerSegment<Quat> rotations_of(const Skeleton& skeleton, const SegmentFrames& frames, const Pose& pose);
 
 /// The extras of a baked animation: {"ukemi": {"format": 1, "generator": ..., "segments": {SEGMENT: {"node",
-/// "segment_from_node": [x, y, z, w]}}}}; null for a fused segment.
-std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames);
+/// "segment_from_node": [x, y, z, w]}}, "marks": [{"name", "time_s"}]}}; null for a fused segment.
+std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames,
+                             const std::vector<Mark>& marks = {});
 
 /// The frames in an animation's extras; nothing where there are none or they do not fit the skeleton.
 std::optional<SegmentFrames> frames_in_extras(const Skeleton& skeleton, std::string_view extras_json);
+
+/// The marks in an animation's extras; none where there are none or they are not as they are written.
+std::vector<Mark> marks_in_extras(std::string_view extras_json);
 
 }  // namespace ukemi

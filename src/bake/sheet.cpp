@@ -80,6 +80,7 @@ Result<Clip> clip_to_draw(const Character& character, const RenderSettings& sett
   }
   Clip clip = sample_clip(character.skeleton, character.animations[chosen], kSheetRate);
   clip.name = clip_label(character, chosen);
+  clip.marks = marks_in_extras(character.animations[chosen].extras_json);
   return clip;
 }
 

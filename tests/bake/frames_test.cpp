@@ -62,6 +62,20 @@ TEST(Frames, OfOtherExtrasAreNone) {
 
 // The left knee bends about an axis that is not the hinge's: canonical rolls follow it from frame to frame,
 // stored ones see the side bend.
+TEST(Frames, MarksComeBackFromTheExtras) {
+  SegmentFrames none;
+  none.node.fill(-1);
+  const std::vector<Mark> marks =
+      marks_in_extras(animation_extras({}, none, {{"impact", 0.25}, {"rest", 2.0}}));
+  ASSERT_EQ(marks.size(), 2u);
+  EXPECT_EQ(marks[0].name, "impact");
+  EXPECT_EQ(marks[1].time_s, 2.0);
+  for (const char* other :
+       {"", "[1]", "{}", R"({"ukemi":{"marks":3}})", R"({"ukemi":{"marks":[{"name":"a"}]}})",
+        R"({"ukemi":{"marks":[{"name":1,"time_s":0}]}})"})
+    EXPECT_TRUE(marks_in_extras(other).empty()) << other;
+}
+
 TEST(Frames, StoredRollsAreKeptOverTheClip) {
   const Puppet puppet;
   const auto range = load_range_of_motion("human");
