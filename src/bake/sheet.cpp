@@ -166,7 +166,9 @@ Shot shot_of(const Loaded& loaded, const RangeOfMotion* range) {
   if (loaded.clip.frames.size() > 1)
     shot.facts.push_back({"duration", fmt::format("{:.2f} s", loaded.clip.duration_s())});
   shot.facts.push_back({"height", fmt::format("{:.2f} m", loaded.humanoid.height_m)});
-  if (range != nullptr) shot.facts.push_back(excess_fact(loaded, *range));
+  if (range == nullptr) return shot;
+  shot.facts.push_back(excess_fact(loaded, *range));
+  shot.notes = {"ranges of motion: a cone per joint, amber near its edge, red outside"};
   return shot;
 }
 

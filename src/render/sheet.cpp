@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kLongestPageSide = 32000;
 constexpr int kShortestCell = 64, kLongestCell = 4096;
+constexpr double kHole = 0.6;  // what empty places weigh beside an unusual aspect
 constexpr double kCellAspect = 320.0 / 360.0;
 
 Error usage_error(std::string what, std::string fix) {
@@ -124,7 +125,9 @@ Result<SheetOptions> fit_sheet(SheetOptions options, int page_width, int page_he
   for (int columns = 1; columns <= options.cells; ++columns) {
     const SheetOptions tried = in_columns(options, columns, page_width, page_height);
     if (!check(tried)) continue;
-    const double error = std::abs(std::log(tried.cell_width / (kCellAspect * tried.cell_height)));
+    const int holes = (columns - options.cells % columns) % columns;
+    const double error = std::abs(std::log(tried.cell_width / (kCellAspect * tried.cell_height))) +
+                         kHole * holes / options.cells;
     if (best && error >= best_error) continue;
     best = tried;
     best_error = error;

@@ -66,8 +66,13 @@ void draw_curve(Picture& page, const Pen& pen, const Timeline& timeline, const B
   }
   const std::string text = fmt::format("mean speed of the joints, at most {:.1f} m/s", peak);
   const double size = pen.size(kSmallSize);
-  pen.fonts.regular.draw(page, box.x + box.width - pen.fonts.regular.width(text, size), box.y + pen.scaled(2),
-                         text, size, pen.theme.soft_ink);
+  const double width = pen.fonts.regular.width(text, size);
+  const int left = box.x + box.width - static_cast<int>(std::ceil(width));
+  fill(
+      page,
+      {left - pen.scaled(4), box.y - pen.scaled(10), static_cast<int>(width) + pen.scaled(4), pen.scaled(15)},
+      0.0, pen.theme.page, 0.85);
+  pen.fonts.regular.draw(page, left, box.y + pen.scaled(2), text, size, pen.theme.soft_ink);
 }
 
 }  // namespace

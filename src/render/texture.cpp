@@ -1,10 +1,13 @@
 #include "render/texture.h"
 
+#include <webp/decode.h>
+
 #include <climits>
 #include <memory>
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_NO_STDIO
@@ -37,16 +40,30 @@ Picture halved(const Picture& picture) {
   return half;
 }
 
+using Pixels = std::unique_ptr<std::uint8_t, void (*)(void*)>;
+
+bool is_webp(const Image& image) {
+  return WebPGetInfo(image.bytes.data(), image.bytes.size(), nullptr, nullptr) != 0;
+}
+
+Pixels decode_webp(const Image& image, Picture& size) {
+  return {WebPDecodeRGBA(image.bytes.data(), image.bytes.size(), &size.width, &size.height), WebPFree};
+}
+
+/// PNG, JPEG and what else stb_image reads.
+Pixels decode_others(const Image& image, Picture& size) {
+  int channels = 0;
+  return {stbi_load_from_memory(image.bytes.data(), static_cast<int>(image.bytes.size()), &size.width,
+                                &size.height, &channels, 4),
+          stbi_image_free};
+}
+
 }  // namespace
 
 Picture decode_image(const Image& image, int longest_side) {
   if (image.bytes.empty() || image.bytes.size() > INT_MAX) return {};
   Picture picture;
-  int channels = 0;
-  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-      stbi_load_from_memory(image.bytes.data(), static_cast<int>(image.bytes.size()), &picture.width,
-                            &picture.height, &channels, 4),
-      stbi_image_free);
+  const Pixels pixels = is_webp(image) ? decode_webp(image, picture) : decode_others(image, picture);
   if (!pixels) return {};
   picture.rgba.assign(pixels.get(), pixels.get() + std::size_t{4} * picture.width * picture.height);
   while (std::max(picture.width, picture.height) > longest_side) picture = halved(picture);

@@ -3,6 +3,7 @@
 #include "render/boxy.h"
 #include "render/moving.h"
 #include "render/render.h"
+#include "render/texture.h"
 
 namespace ukemi {
 namespace {
@@ -71,6 +72,19 @@ TEST(WebP, animation_holds_every_frame_for_its_time) {
   const auto bytes = encoder.finish();
   ASSERT_TRUE(bytes) << bytes.error().message();
   EXPECT_EQ(durations(*bytes), (std::vector<std::uint32_t>{33, 34, 33, 33, 34, 33}));
+}
+
+TEST(WebP, is_read_as_a_texture) {
+  Picture picture{16, 8, std::vector<std::uint8_t>(std::size_t{4} * 16 * 8, 255)};
+  for (std::size_t i = 0; i < picture.rgba.size(); i += 4) picture.rgba[i] = 40;
+  const auto bytes = encode_webp(picture, 100.0);
+  ASSERT_TRUE(bytes);
+  const Picture decoded = decode_image({"image/webp", *bytes}, 1024);
+  ASSERT_EQ(decoded.width, 16);
+  ASSERT_EQ(decoded.height, 8);
+  EXPECT_LT(differing_pixels(decoded, picture, 8), 1);
+  std::vector<std::uint8_t> cut(bytes->begin(), bytes->begin() + 40);
+  EXPECT_TRUE(decode_image({"image/webp", cut}, 1024).rgba.empty());
 }
 
 TEST(WebP, animation_without_a_frame_is_an_error) {
