@@ -14,6 +14,7 @@ constexpr double kFloorSearch_m = 0.25;  // a lowest point this near to y = 0 st
 constexpr int kViewsAround = 12;
 constexpr double kArrow_m = 0.42;
 constexpr double kArrowTime_s = 0.06;
+constexpr float kHiddenArrowAlpha = 0.45f;
 const Rgba kArrowColor = srgb(0xC23B22);
 
 Vec3 flat(const Vec3& v) { return {v.x(), 0.0, v.z()}; }
@@ -79,14 +80,22 @@ bool shows_arrow(const Shot& shot, int frame) {
   return !shot.impact_direction.isZero() && std::abs(time - impact_time(*shot.clip)) <= kArrowTime_s;
 }
 
-void add_blow_arrow(Geometry& geometry, const Shot& shot, int frame) {
+void add_blow_arrow(Geometry& geometry, const Shot& shot, int frame, float alpha) {
   Surface surface;
   surface.casts_shadow = false;
   surface.gloss = 0.0f;
+  if (alpha < 1.0f) surface.alpha = Material::Alpha::blend;
+  surface.takes_shadow = alpha >= 1.0f;
   geometry.begin(surface);
   const Vec3 direction = shot.impact_direction.normalized();
-  add_arrow(geometry, shot.impact_point - arrow_gap(shot, frame) * direction, direction, kArrow_m,
-            kArrowColor);
+  Rgba color = kArrowColor;
+  color[3] = alpha;
+  add_arrow(geometry, shot.impact_point - arrow_gap(shot, frame) * direction, direction, kArrow_m, color);
+}
+
+void add_blow_arrow(FrameGeometry& geometry, const Shot& shot, int frame) {
+  add_blow_arrow(geometry.solid, shot, frame);
+  add_blow_arrow(geometry.overlay, shot, frame, kHiddenArrowAlpha);
 }
 
 Stage Staging::at(int frame) const {

@@ -45,6 +45,8 @@ Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& join
 /// The arrow of the blow: it ends at the impact point, or behind the ball that touches it there.
 /// Shown shortly before and after the mark "impact" only.
 bool shows_arrow(const Shot& shot, int frame);
-void add_blow_arrow(Geometry& geometry, const Shot& shot, int frame);
+void add_blow_arrow(Geometry& geometry, const Shot& shot, int frame, float alpha = 1.0f);
+/// The same, seen through what hides it.
+void add_blow_arrow(FrameGeometry& geometry, const Shot& shot, int frame);
 
 }  // namespace ukemi

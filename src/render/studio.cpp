@@ -46,7 +46,7 @@ Status check_finite(const Shot& shot, const JointPaths& joints) {
 
 FrameGeometry Studio::geometry(int frame) const {
   FrameGeometry result = figure.geometry(frame);
-  if (shows_arrow(shot, frame)) add_blow_arrow(result.solid, shot, frame);
+  if (shows_arrow(shot, frame)) add_blow_arrow(result, shot, frame);
   return result;
 }
 

@@ -18,7 +18,7 @@ Result<Picture> render_thumbnail(const Shot& shot, const ThumbnailOptions& optio
   Geometry arrow;
   if (!shot.impact_direction.isZero()) {
     add_blow_arrow(arrow, shot, frame);
-    add_blow_arrow(geometry.solid, shot, frame);
+    add_blow_arrow(geometry, shot, frame);
   }
 
   Camera camera;
