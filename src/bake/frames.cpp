@@ -65,7 +65,7 @@ PerSegment<Quat> rotations_of(const Skeleton& skeleton, const SegmentFrames& fra
   return rotations;
 }
 
-std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames) {
+std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames, const ClipFacts& facts) {
   Json segments = Json::object();
   for (int i = 0; i < kSegmentCount; ++i) {
     const Quat& q = frames.segment_from_node[i];
@@ -73,8 +73,13 @@ std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& fram
     if (frames.node[i] < 0) continue;
     segment = {{"node", skeleton.label(frames.node[i])}, {"segment_from_node", {q.x(), q.y(), q.z(), q.w()}}};
   }
-  const Json json = {
-      {"ukemi", {{"format", 1}, {"generator", generator()}, {"segments", std::move(segments)}}}};
+  Json ours = {{"format", 1}, {"generator", generator()}};
+  ours["marks"] = Json::object();
+  for (const Mark& mark : facts.marks) ours["marks"][mark.name] = mark.time_s;
+  ours["root_motion"] = facts.root_motion;
+  ours["additive"] = facts.additive;
+  if (!facts.additive) ours["segments"] = std::move(segments);
+  const Json json = {{"ukemi", std::move(ours)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -31,7 +31,7 @@ TEST(Frames, ComeBackFromTheExtras) {
   for (int i = 0; i < kSegmentCount; ++i) segments[i].rotation = exp_rotation(Vec3(0.1 * i, 0.2, -0.05 * i));
   const Pose pose = rest_pose(puppet.skeleton);
   const SegmentFrames frames = segment_frames(puppet.skeleton, puppet.humanoid, pose, segments);
-  const auto read = frames_in_extras(puppet.skeleton, animation_extras(puppet.skeleton, frames));
+  const auto read = frames_in_extras(puppet.skeleton, animation_extras(puppet.skeleton, frames, {}));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->node, frames.node);
   EXPECT_EQ(read->node[index(Segment::hand_l)], -1);
@@ -47,7 +47,7 @@ TEST(Frames, OfOtherExtrasAreNone) {
   const Puppet puppet;
   const SegmentFrames frames =
       segment_frames(puppet.skeleton, puppet.humanoid, rest_pose(puppet.skeleton), {});
-  std::string extras = animation_extras(puppet.skeleton, frames);
+  std::string extras = animation_extras(puppet.skeleton, frames, {});
   Skeleton other = puppet.skeleton;
   other.nodes[index(Segment::head)].name = "skull";
   EXPECT_FALSE(frames_in_extras(other, extras)) << "a node that is not there";
