@@ -26,6 +26,7 @@ void declare_out(Options& options, BakeRequest& request) {
   BakeSettings& settings = request.settings;
   options.group("out");
   options.paths("-o,--output", settings.outputs, "the clip, as .glb, .gltf or .bvh");
+  options.flag("--append", settings.append, "add the clip to those of a glTF output that exists");
   options.path("--sheet", settings.sheet, "contact sheet, as .png");
   options.path("--report", settings.report, "what the bake did, as JSON");
   options.flag("--json", request.json, "the same JSON to stdout");
