@@ -517,6 +517,16 @@ TEST_F(GltfFiles, UrisThatLeaveTheFolderAreRefused) {
   }
 }
 
+TEST_F(GltfFiles, LinksThatLeaveTheFolderAreRefused) {
+  fs::create_symlink(folder / "outside.bin", folder / "model" / "link.bin");
+  std::ofstream(folder / "outside.bin") << "secret";
+  for (const char* kind : {"buffers", "images"}) {
+    const auto c = load_with_uri("link.bin", kind);
+    ASSERT_FALSE(c) << kind;
+    EXPECT_NE(c.error().what.find("not a file beside the document"), std::string::npos) << c.error().what;
+  }
+}
+
 TEST_F(GltfFiles, AMissingBufferIsAnErrorAndAMissingImageAWarning) {
   const auto c = load_with_uri("none.bin");
   ASSERT_FALSE(c);
