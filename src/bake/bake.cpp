@@ -271,14 +271,20 @@ Result<BakedFile> bake_loaded(const Character& character, const BakeSettings& se
   return baked;
 }
 
-Status write_files(BakedFile& baked) {
+Status add_files(BakedFile& baked, PendingFiles& files) {
   Stopwatch watch;
   for (const OutputFile& file : baked.files)
-    if (const Status status = write_file(file.path, file.bytes); !status) return status.error();
+    if (const Status status = files.add(file.path, file.bytes); !status) return status.error();
   const double write_s = watch.lap();
   baked.outcome.timings_s.export_ += write_s;
   baked.outcome.timings_s.total += write_s;
   return Done{};
+}
+
+Status write_files(BakedFile& baked) {
+  PendingFiles files;
+  if (const Status status = add_files(baked, files); !status) return status.error();
+  return files.commit();
 }
 
 Result<BakedFile> bake_file(const std::string& character, const BakeSettings& settings,
@@ -292,13 +298,15 @@ Result<BakedFile> bake_file(const std::string& character, const BakeSettings& se
   const double load_s = watch.lap();
   auto baked = bake_loaded(*loaded, settings, diagnostics);
   if (!baked) return baked.error();
-  if (const Status status = write_files(*baked); !status) return status.error();
+  PendingFiles files;
+  if (const Status status = add_files(*baked, files); !status) return status.error();
   baked->outcome.timings_s.load += load_s;
   baked->outcome.timings_s.total = watch.total();
   baked->report = report_json(character, *loaded, settings, baked->outcome, baked->reduced, diagnostics,
                               baked->root_curve);
   if (!settings.report.empty())
-    if (const Status status = write_file(settings.report, baked->report); !status) return status.error();
+    if (const Status status = files.add(settings.report, baked->report); !status) return status.error();
+  if (const Status status = files.commit(); !status) return status.error();
   return baked;
 }
 

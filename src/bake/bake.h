@@ -10,6 +10,7 @@
 
 #include "bake/start.h"
 #include "base/character.h"
+#include "base/files.h"
 #include "base/result.h"
 #include "body/body.h"
 #include "export/export.h"
@@ -138,6 +139,9 @@ Result<BakeOutcome> bake(const Character& character, const BakeSettings& setting
 /// made. Errors: those of the stages.
 Result<BakedFile> bake_loaded(const Character& character, const BakeSettings& settings,
                               Diagnostics& diagnostics);
+
+/// Lays the files beside their targets and counts the time. Errors: output.
+Status add_files(BakedFile& baked, PendingFiles& files);
 
 /// Writes the clips and the pictures of a bake. Errors: output.
 Status write_files(BakedFile& baked);

@@ -16,6 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kMostSamples = 200000.0;  // of one comparison
 constexpr double kMinRate = 30.0;
 constexpr double kMaxRate = 240.0;
 constexpr std::size_t kWorstShown = 5;
@@ -213,6 +214,7 @@ Result<Difference> difference_of(const PlacedClip& a, const PlacedClip& b,
   difference.rate =
       std::clamp(std::max(native_rate(*a.animation), native_rate(*b.animation)), kMinRate, kMaxRate);
   const double shared_s = std::min(difference.duration_a_s, difference.duration_b_s);
+  difference.rate = std::min(difference.rate, kMostSamples / std::max(shared_s, 1e-3));
   const long last = std::lround(std::floor(shared_s * difference.rate + 1e-3));
   for (long i = 0; i <= last; ++i) comparison.compare_at(static_cast<double>(i) / difference.rate);
   difference.samples = last + 1;

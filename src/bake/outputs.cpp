@@ -44,7 +44,12 @@ std::optional<OutputFormat> output_format(const fs::path& path) {
 
 Status check_writable(const fs::path& path) {
   std::error_code error;
-  if (fs::is_directory(path, error)) return cannot_write(path, "is a directory", "name a file");
+  const fs::file_status target = fs::status(path, error);
+  if (fs::is_directory(target)) return cannot_write(path, "is a directory", "name a file");
+  if (fs::exists(target) && !fs::is_regular_file(target))
+    return cannot_write(path, "is not a regular file", "name a file");
+  if (target.type() == fs::file_type::none && error != std::errc::permission_denied)
+    return cannot_write(path, error.message(), "choose another name for the output");
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error))
     return cannot_write(path, fmt::format("there is no folder '{}'", folder.string()),

@@ -6,6 +6,8 @@
 namespace ukemi {
 namespace {
 
+constexpr double kMostTransforms = 5e6;  // of one clip: 400 MB
+
 Eigen::Vector4d key_value(const Track& track, std::size_t key, std::size_t part) {
   const std::size_t width = track.path == TrackPath::rotation ? 4 : 3;
   const std::size_t stride = track.interpolation == Interpolation::cubic ? 3 * width : width;
@@ -69,10 +71,12 @@ Pose sample(const Skeleton& skeleton, const Animation& animation, double time_s)
 
 Clip sample_clip(const Skeleton& skeleton, const Animation& animation, double fps) {
   Clip clip{animation.name, fps, {}, {}};
+  const double most = std::max(1.0, std::floor(kMostTransforms / static_cast<double>(skeleton.nodes.size())));
+  if (animation.duration_s() * fps > most) clip.fps = most / animation.duration_s();
   // A thousandth of a frame absorbs rounded frame times (0.0333333 s).
-  const auto last = static_cast<long>(std::floor(animation.duration_s() * fps + 1e-3));
+  const auto last = static_cast<long>(std::floor(animation.duration_s() * clip.fps + 1e-3));
   for (long i = 0; i <= last; ++i)
-    clip.frames.push_back(sample(skeleton, animation, animation.start_s + static_cast<double>(i) / fps));
+    clip.frames.push_back(sample(skeleton, animation, animation.start_s + static_cast<double>(i) / clip.fps));
   return clip;
 }
 

@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -26,48 +28,38 @@ Error output_error(const fs::path& path, const std::string& what) {
           "choose a folder that exists, has space and that you may write to"};
 }
 
-/// Closes and, unless released, removes the temporary file.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(std::string pattern)
-      : path_(std::move(pattern)), fd_(mkostemp(path_.data(), O_CLOEXEC)) {}
-  ~TemporaryFile() {
-    if (fd_ >= 0) close(fd_);
-    if (created_ && !released_) unlink(path_.c_str());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
 
-  bool ok() {
-    created_ = fd_ >= 0;
-    return created_;
+/// A new file in `folder`, under a name that no other process or call has: descriptor and name, or -1.
+std::pair<int, fs::path> open_new_file(const fs::path& folder) {
+  static std::atomic<unsigned> counter = 0;
+  constexpr int kTries = 1000;  // names that killed processes left behind
+  for (int i = 0; i < kTries; ++i) {
+    fs::path path = folder / (".ukemi-" + std::to_string(getpid()) + '-' + std::to_string(counter++));
+    const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0 || errno != EEXIST) return {fd, std::move(path)};
   }
-  bool write_all(std::span<const std::uint8_t> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) return false;
-      bytes = bytes.subspan(static_cast<std::size_t>(n));
-    }
-    return true;
-  }
-  bool finish_as(const fs::path& target) {
-    const mode_t mask = umask(0);
-    umask(mask);
-    if (fchmod(fd_, 0666 & ~mask) != 0) return false;
-    const int fd = fd_;
-    fd_ = -1;
-    if (close(fd) != 0) return false;
-    released_ = std::rename(path_.c_str(), target.c_str()) == 0;
-    return released_;
-  }
+  return {-1, {}};
+}
 
- private:
-  std::string path_;
-  int fd_;
-  bool created_ = false;
-  bool released_ = false;
-};
+bool write_all(int fd, std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(n));
+  }
+  return true;
+}
+
+/// A link stays a link: what it leads to is written.
+fs::path followed(const fs::path& path) {
+  std::error_code error;
+  fs::path target = fs::canonical(path, error);
+  return error ? path : target;
+}
 
 }  // namespace
 
@@ -101,18 +93,59 @@ Result<std::vector<std::uint8_t>> read_file(const fs::path& path, std::size_t ma
   return bytes;
 }
 
-Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+PendingFiles::~PendingFiles() {
+  for (const Pending& file : files_) unlink(file.temporary.c_str());
+}
+
+Status PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  const fs::path target = followed(path);
   struct stat info {};
-  if (stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
+  const bool exists = stat(target.c_str(), &info) == 0;
+  if (exists && !S_ISREG(info.st_mode))
     return output_error(path, S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file");
-  TemporaryFile file(path.string() + ".XXXXXX");
-  if (!file.ok() || !file.write_all(bytes) || !file.finish_as(path))
-    return output_error(path, std::strerror(errno));
+  const auto [fd, temporary] = open_new_file(target.parent_path());
+  if (fd < 0) return output_error(path, std::strerror(errno));
+  files_.push_back({path, target, temporary});
+  const bool written = write_all(fd, bytes) && (!exists || fchmod(fd, info.st_mode & 0777) == 0);
+  const int error = errno;
+  const bool closed = close(fd) == 0;
+  if (written && closed) return Done{};
+  return output_error(path, std::strerror(written ? errno : error));
+}
+
+Status PendingFiles::add(const fs::path& path, std::string_view text) { return add(path, bytes_of(text)); }
+
+Status PendingFiles::commit() {
+  while (!files_.empty()) {
+    const Pending& file = files_.front();
+    if (std::rename(file.temporary.c_str(), file.target.c_str()) != 0)
+      return output_error(file.path, std::strerror(errno));
+    files_.erase(files_.begin());
+  }
   return Done{};
 }
 
-Status write_file(const fs::path& path, std::string_view text) {
-  return write_file(path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  PendingFiles file;
+  if (const Status status = file.add(path, bytes); !status) return status.error();
+  return file.commit();
+}
+
+Status write_file(const fs::path& path, std::string_view text) { return write_file(path, bytes_of(text)); }
+
+std::optional<fs::path> file_below(const fs::path& folder, const fs::path& relative) {
+  if (relative.empty() || relative.is_absolute() || relative.native().find('\0') != std::string::npos)
+    return std::nullopt;
+  for (const auto& part : relative)
+    if (part == "..") return std::nullopt;
+  const fs::path path = folder / relative;
+  std::error_code error;
+  const fs::path real_folder = fs::canonical(folder.empty() ? "." : folder, error);
+  if (error) return path;  // nothing is there to be read
+  const fs::path real = fs::weakly_canonical(path, error);
+  if (error) return path;
+  const auto [end, rest] = std::mismatch(real_folder.begin(), real_folder.end(), real.begin(), real.end());
+  return end == real_folder.end() ? std::optional(path) : std::nullopt;
 }
 
 Result<fs::path> find_asset(const fs::path& relative) {

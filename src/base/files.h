@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,34 @@ Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path, s
 /// Writes beside the target and renames: the file appears whole or not at all. Errors: output.
 Status write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Status write_file(const std::filesystem::path& path, std::string_view text);
+
+/// Files that appear together. What is added lies beside its target under a name of its own until commit()
+/// renames it; what is not committed is removed. A name that is a link is followed and stays one; a file that
+/// is replaced keeps its permissions.
+class PendingFiles {
+ public:
+  PendingFiles() = default;
+  ~PendingFiles();
+  PendingFiles(const PendingFiles&) = delete;
+  PendingFiles& operator=(const PendingFiles&) = delete;
+
+  /// Errors: output (no space, no permission, a directory, a device).
+  Status add(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+  Status add(const std::filesystem::path& path, std::string_view text);
+  /// Errors: output; then the files from the failing one on are not there.
+  Status commit();
+
+ private:
+  struct Pending {
+    std::filesystem::path path, target, temporary;  // as the user wrote it; links followed; until then
+  };
+  std::vector<Pending> files_;
+};
+
+/// `folder / relative`, where that is a place below `folder`, also after links are followed; nothing for
+/// absolute paths, "..", and links that lead out.
+std::optional<std::filesystem::path> file_below(const std::filesystem::path& folder,
+                                                const std::filesystem::path& relative);
 
 /// A file of the project's assets folder: $UKEMI_ASSETS, share/ukemi beside the program's folder, or the
 /// source tree.

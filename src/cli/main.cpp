@@ -1,3 +1,6 @@
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -5,8 +8,21 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 
+namespace {
+
+/// A standard stream that the caller closed is taken up, lest a file that is opened later receive what is
+/// printed. Writing to stdout or stderr still fails.
+void take_up_closed_streams() {
+  for (int stream = 0; stream <= 2; ++stream)
+    if (fcntl(stream, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
+}
+
+}  // namespace
+
 int main(int count, char** words) {
+  take_up_closed_streams();
   std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away ends the writing, not the program
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error, not the program's end
   try {
     return ukemi::run({words + (count > 0 ? 1 : 0), words + count});
   } catch (const std::exception& error) {

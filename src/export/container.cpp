@@ -1,5 +1,7 @@
 #include "export/container.h"
 
+#include "base/files.h"
+
 #include <algorithm>
 #include <charconv>
 #include <limits>
@@ -97,9 +99,7 @@ std::optional<std::vector<std::uint8_t>> data_of(std::string_view uri) {
 std::optional<std::filesystem::path> local_file(std::string_view uri, const std::filesystem::path& folder) {
   const std::size_t colon = uri.find(':');
   if (colon != std::string_view::npos && uri.find('/') > colon) return std::nullopt;
-  const std::filesystem::path relative = percent_decoded(uri);
-  if (relative.empty() || relative.is_absolute()) return std::nullopt;
-  return folder / relative;
+  return file_below(folder, percent_decoded(uri));
 }
 
 std::string_view image_mime(std::span<const std::uint8_t> bytes) {

@@ -24,7 +24,8 @@ std::string data_uri(std::string_view mime, std::span<const std::uint8_t> bytes)
 /// Content of a base64 data URI; nothing when it is malformed or none.
 std::optional<std::vector<std::uint8_t>> data_of(std::string_view uri);
 
-/// The file that a relative URI names; nothing for data URIs, absolute paths and other schemes.
+/// The file below the folder that a relative URI names; nothing for data URIs, other schemes and what leads
+/// out.
 std::optional<std::filesystem::path> local_file(std::string_view uri, const std::filesystem::path& folder);
 
 /// MIME type of an encoded image by its first bytes; "" when it is none that glTF takes.

@@ -18,6 +18,7 @@ using load::same_word;
 
 constexpr int kMaxDepth = 1000;
 constexpr long kMaxChannelsPerJoint = 6;
+constexpr double kLongest_s = 86400.0;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
@@ -281,6 +282,10 @@ class BvhReader {
     if (!seconds || *seconds <= 0.0 || *seconds > 3600.0)
       return error(frames_line_ + 1, fmt::format("has frame time {}", quoted(*time)),
                    "give 'Frame Time:' the seconds between rows, as in 0.0333333");
+    if (*seconds * static_cast<double>(announced_) > kLongest_s)
+      return error(frames_line_ + 1,
+                   fmt::format("lasts {:g} s, longer than a day", *seconds * static_cast<double>(announced_)),
+                   "cut the motion into shorter files");
     source.frame_time_s = *seconds;
     fps = rate_of(*time, *seconds);
     return Done{};

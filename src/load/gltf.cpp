@@ -24,6 +24,8 @@ using load::Refusal;
 constexpr const char* kExportAgain = "export the file again";
 // Vertices of all instances together; keeps a small file from asking for gigabytes.
 constexpr std::size_t kMaxVertices = std::size_t{1} << 25;
+constexpr int kMaxDepth = 1000;  // of the nodes
+constexpr float kLongest_s = 86400.0f;
 
 bool is_supported(const std::string& extension) {
   static const std::set<std::string> kSupported{
@@ -118,7 +120,18 @@ class GltfReader {
         node.parent = static_cast<int>(i);
       }
     if (!skeleton.sort()) throw Refusal("nodes: a node is its own ancestor", kExportAgain);
+    check_depth();
     read_scenes(root);
+  }
+
+  /// Bounds the time of every walk towards the root.
+  void check_depth() const {
+    std::vector<int> depth(nodes_.size(), 1);
+    for (const int node : character_.skeleton.order) {
+      const int parent = character_.skeleton.nodes[node].parent;
+      if (parent >= 0) depth[node] = depth[parent] + 1;
+      if (depth[node] > kMaxDepth) nodes_[node].refuse(fmt::format("is nested deeper than {}", kMaxDepth));
+    }
   }
 
   /// Marks the nodes of the default scene; all of them when there are no scenes.
@@ -257,6 +270,9 @@ class GltfReader {
         sampler.at("input").refuse(
             fmt::format("({}): time {} is {} s, which is negative or not after the one before",
                         accessors.place(input), k, times[k]));
+    if (!times.empty() && times.back() > kLongest_s)
+      sampler.at("input").refuse(
+          fmt::format("({}): the last time is {} s, later than a day", accessors.place(input), times.back()));
     const bool cubic = track.interpolation == Interpolation::cubic;
     const std::size_t needed = times.size() * (cubic ? 3 : 1);
     if (accessors.count(output) != needed)

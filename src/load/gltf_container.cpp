@@ -147,17 +147,16 @@ bool has_scheme(std::string_view uri) {
 }
 
 /// Refuses everything but a relative path that stays below the document's folder.
-std::filesystem::path safe_relative_path(const JsonView& place, const std::string& uri) {
+std::filesystem::path safe_path(const JsonView& place, const std::string& uri,
+                                const std::filesystem::path& folder) {
   const std::string decoded = percent_decoded(uri);
-  const std::filesystem::path relative(decoded);
-  bool inside = !decoded.empty() && decoded.find_first_of(std::string("\\\0", 2)) == decoded.npos &&
-                !has_scheme(decoded) && relative.is_relative();
-  for (const auto& part : relative) inside = inside && part != "..";
-  if (!inside)
+  const bool plain = decoded.find('\\') == decoded.npos && !has_scheme(decoded);
+  const auto path = plain ? file_below(folder, decoded) : std::nullopt;
+  if (!path)
     throw Refusal(
         fmt::format("{} is {}, which is not a file beside the document", place.place(), load::quoted(uri)),
         "put the file into the document's folder and name it by a relative path");
-  return relative;
+  return *path;
 }
 
 }  // namespace
@@ -177,8 +176,7 @@ GltfContainer split_container(std::span<const std::uint8_t> bytes) {
 Result<std::vector<std::uint8_t>> resolve_uri(const JsonView& uri, const std::filesystem::path& folder) {
   const std::string text = uri.text();
   if (text.starts_with("data:")) return decode_data_uri(uri, text);
-  const std::filesystem::path relative = safe_relative_path(uri, text);
-  return read_file(folder / relative, static_cast<std::size_t>(kMaxBufferBytes));
+  return read_file(safe_path(uri, text, folder), static_cast<std::size_t>(kMaxBufferBytes));
 }
 
 void resolve_buffers(const JsonView& root, GltfContainer& container) {

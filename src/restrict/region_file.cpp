@@ -16,15 +16,23 @@ constexpr std::size_t kMaxBytes = 1u << 20;
 constexpr double kMaxSwing = radians(170.0);
 constexpr double kUnitTolerance = 1e-3;  // table axes are rounded to four decimals
 
+constexpr int kMostBases = 8;  // of one another
+
+Result<RangeOfMotion> load_region(const std::string& name_or_file, int bases);
+
 /// Reads one region file; the first fault stops it.
 class RegionReader {
  public:
-  explicit RegionReader(std::string file) : file_(std::move(file)) {}
+  /// `bases`: number of files that are based on this one.
+  explicit RegionReader(std::string file, int bases = 0) : file_(std::move(file)), bases_(bases) {}
 
   Result<RangeOfMotion> read(const toml::table& table) {
     range_.name = file_;
     if (const auto base = table["base"].value<std::string>()) {
-      Result<RangeOfMotion> loaded = load_range_of_motion(*base);
+      if (bases_ >= kMostBases)
+        return fail(table, "", fmt::format("more than {} regions are based on one another", kMostBases),
+                    "base it on human, diamond or box");
+      Result<RangeOfMotion> loaded = load_region(*base, bases_ + 1);
       if (!loaded) return loaded;
       start_from(std::move(*loaded));
       range_.name = file_;
@@ -223,6 +231,7 @@ class RegionReader {
   }
 
   std::string file_;
+  int bases_;
   RangeOfMotion range_;
   PerJoint<bool> given_{};  // has a range: of the base, or read
   PerJoint<bool> read_{};   // has a table
@@ -257,9 +266,16 @@ JointRange mirrored(const JointRange& range) {
   return result;
 }
 
-Result<RangeOfMotion> parse_range_of_motion(std::string_view text, const std::string& file) {
+Result<RangeOfMotion> with_joint_tables(RangeOfMotion range, const toml::array& joints,
+                                        const std::string& file) {
+  return RegionReader(file).change(std::move(range), joints);
+}
+
+namespace {
+
+Result<RangeOfMotion> parse_region(std::string_view text, const std::string& file, int bases) {
   try {
-    return RegionReader(file).read(toml::parse(text, file));
+    return RegionReader(file, bases).read(toml::parse(text, file));
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
     return Error{ErrorKind::input,
@@ -272,12 +288,7 @@ Result<RangeOfMotion> parse_range_of_motion(std::string_view text, const std::st
   }
 }
 
-Result<RangeOfMotion> with_joint_tables(RangeOfMotion range, const toml::array& joints,
-                                        const std::string& file) {
-  return RegionReader(file).change(std::move(range), joints);
-}
-
-Result<RangeOfMotion> load_range_of_motion(const std::string& name_or_file) {
+Result<RangeOfMotion> load_region(const std::string& name_or_file, int bases) {
   const bool named = name_or_file == "human" || name_or_file == "diamond" || name_or_file == "box";
   std::filesystem::path path = name_or_file;
   if (named) {
@@ -292,9 +303,19 @@ Result<RangeOfMotion> load_range_of_motion(const std::string& name_or_file) {
     return error;
   }
   Result<RangeOfMotion> range =
-      parse_range_of_motion({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string());
+      parse_region({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path.string(), bases);
   if (range && named) range->name = name_or_file;
   return range;
+}
+
+}  // namespace
+
+Result<RangeOfMotion> parse_range_of_motion(std::string_view text, const std::string& file) {
+  return parse_region(text, file, 0);
+}
+
+Result<RangeOfMotion> load_range_of_motion(const std::string& name_or_file) {
+  return load_region(name_or_file, 0);
 }
 
 }  // namespace ukemi

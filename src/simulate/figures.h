@@ -27,6 +27,7 @@ class Recorder {
   void rest(double time_s) { figures_.rest_time_s = time_s; }
   void momentum(double momentum_n_s) { figures_.momentum_n_s = momentum_n_s; }
 
+  double energy_gain_j() const { return figures_.energy_gain_max_j; }
   LimitFigures limits(bool projected) const;
   SimulationFigures figures() const;
   /// Of the samples outside, rad, in the order of time.

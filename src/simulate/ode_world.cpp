@@ -9,7 +9,10 @@
 namespace ukemi {
 namespace {
 
+thread_local long failures = 0;  // of ODE on this thread
+
 [[noreturn]] void fail(int, const char* format, va_list arguments) {
+  ++failures;
   char text[256];
   std::vsnprintf(text, sizeof text, format, arguments);
   throw OdeFailure(text);
@@ -30,7 +33,7 @@ void initialise_ode() {
   dAllocateODEDataForThread(dAllocateMaskAll);
 }
 
-OdeWorld::OdeWorld() {
+OdeWorld::OdeWorld() : failures_before_(failures) {
   initialise_ode();
   world_ = dWorldCreate();
   contacts_ = dJointGroupCreate(0);
@@ -39,8 +42,10 @@ OdeWorld::OdeWorld() {
   dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
 }
 
+bool OdeWorld::poisoned() const { return failures != failures_before_; }
+
 OdeWorld::~OdeWorld() {
-  if (poisoned_) return;
+  if (poisoned()) return;
   dJointGroupDestroy(contacts_);
   dWorldDestroy(world_);
   dThreadingFreeImplementation(threading_);

@@ -1,5 +1,6 @@
-// An ODE world of one's own: created, stepped, torn down. ODE's fatal errors become exceptions; a world that
-// threw is never touched again (destroying it would abort), so its memory is given up.
+// An ODE world of one's own: created, stepped, torn down, all in one thread. ODE's fatal errors become
+// exceptions; a world that threw is never touched again (destroying it would abort), so its memory is given
+// up.
 #pragma once
 
 #include <stdexcept>
@@ -26,15 +27,14 @@ class OdeWorld {
 
   dWorldID id() const { return world_; }
   dJointGroupID contacts() const { return contacts_; }
-  /// After an OdeFailure: nothing of the world is touched any more.
-  void poison() { poisoned_ = true; }
-  bool poisoned() const { return poisoned_; }
+  /// After an OdeFailure since this world was made: nothing of it is touched any more.
+  bool poisoned() const;
 
  private:
   dWorldID world_;
   dJointGroupID contacts_;
   dThreadingImplementationID threading_;
-  bool poisoned_ = false;
+  long failures_before_;
 };
 
 inline Vec3 vec3(const double* v) { return {v[0], v[1], v[2]}; }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "simulate/check.h"
 #include "simulate/collision.h"
 #include "simulate/figures.h"
 #include "simulate/limits.h"
@@ -40,11 +41,11 @@ constexpr double kWorstMiss =
 constexpr double kErp = 0.8;
 constexpr double kErpPerSecond = 192.0;  // ERP = min(0.8, 192 h): correction speed does not grow as h shrinks
 constexpr double kCfm = 1e-9;
-constexpr double kContactLayer = 0.001;   // m
-constexpr double kMaxExplicitGain = 0.1;  // of k h: explicit torques beyond it explode
-constexpr double kRunaway = 100.0;        // m/s
-constexpr double kRestSpeed = 0.02;       // m/s
-constexpr double kRestTurning = 0.1;      // rad/s
+constexpr double kContactLayer = 0.001;  // m
+constexpr double kRunaway = 100.0;       // m/s
+constexpr double kTornApart = 0.115;  // of the height: a joint whose halves are so far apart is none any more
+constexpr double kRestSpeed = 0.02;   // m/s
+constexpr double kRestTurning = 0.1;  // rad/s
 constexpr double kRestSpan_s = 0.25;
 constexpr double kSlowSpeed = 0.2;    // m/s, and
 constexpr double kSlowTurning = 1.0;  // rad/s: for kSlowSpan_s the body settles into the pose it has
@@ -52,16 +53,24 @@ constexpr double kSlowSpan_s = 0.15;
 constexpr double kSettleRamp_s = 0.5;
 constexpr double kSettleShare = 0.5;  // of the tone
 
+constexpr double kEarthGravity = 9.81;  // m/s^2
+constexpr double kEnergyGain = 0.8;     // of mass g height: more energy from nowhere is an explosion
+constexpr double kBlowShare = 0.01;     // and of the energy of what hits, which no solver keeps exactly
+
+/// Thrown out of a run that is no motion of a body any more.
 struct Diverged {
   Segment segment;
   double time_s, speed;
+  std::string how{};  // where it is not the speed
 };
 
-Stepping stepping_of(const SimulationSettings& settings) {
+/// `refinement`: so many times shorter than the settings say.
+Stepping stepping_of(const SimulationSettings& settings, int refinement) {
   Stepping s;
+  s.tick_s /= refinement;
   if (settings.fixed_hz > 0.0) {
     s.adaptive = false;
-    s.tick_s = 1.0 / settings.fixed_hz;
+    s.tick_s = 1.0 / (settings.fixed_hz * refinement);
     s.base_ticks = s.calm_ticks = 1;
     s.reach = {std::max(0.25, 120.0 * s.tick_s), 0.0};
     s.max_correcting_speed = 1.0;
@@ -86,10 +95,12 @@ class Simulation {
   /// `judged`: range that the figures are taken against; null: the range in force.
   Simulation(const ArticulatedBody& body, const RangeOfMotion& range, const RangeOfMotion* judged,
              const ActiveThresholds& thresholds, const StartState& start, const Scene& scene,
-             const SimulationSettings& settings)
+             const SimulationSettings& settings, int refinement)
       : settings_(settings),
         judged_(judged),
-        stepping_(stepping_of(settings)),
+        torn_apart_(kTornApart * body.height_m),
+        most_energy_j_(kEnergyGain * body.mass_kg * kEarthGravity * body.height_m),
+        stepping_(stepping_of(settings, refinement)),
         direction_(scene.direction),
         model_(world_, body, range),
         collision_(world_, model_, body, settings.self_collision),
@@ -120,12 +131,14 @@ class Simulation {
   SimulationResult result();
   const std::vector<double>& excesses() const { return recorder_.excesses(); }
   double time_s() const { return stepping_.tick_s * static_cast<double>(ticks_); }
-  void poison() { world_.poison(); }
+  /// When and where a joint first came apart or energy came from nowhere; a run goes on all the same.
+  const std::optional<Diverged>& torn() const { return torn_; }
 
  private:
   double base_h() const { return stepping_.tick_s * stepping_.base_ticks; }
   bool projecting() const { return settings_.limits == Limits::edges; }
 
+  void run_to_end();
   void set_erp(double h);
   void add_forces(double h);
   void advance(int ticks);
@@ -144,11 +157,17 @@ class Simulation {
   void save();
   void restore();
   void check_speeds() const;
+  void watch_joints(double worst_separation);
+  void watch_energy();
+  Diverged fastest(std::string how) const;
   void watch_rest(int ticks);
   void add_frames_until(double time_s);
 
   SimulationSettings settings_;
   const RangeOfMotion* judged_;
+  double torn_apart_;     // m
+  double most_energy_j_;  // to be gained without a cause
+  std::optional<Diverged> torn_;
   Stepping stepping_;
   Vec3 direction_;  // of the blow
   OdeWorld world_;
@@ -201,6 +220,7 @@ void Simulation::add_forces(double h) {
 /// Full at the blow, gone after the fade, back in part once the body lies still.
 double Simulation::tone_share() const {
   if (settling_since_s_) return kSettleShare * std::min(1.0, (time_s() - *settling_since_s_) / kSettleRamp_s);
+  if (settings_.tone_fade_s <= 0.0) return 0.0;
   const double left = std::clamp(1.0 - time_s() / settings_.tone_fade_s, 0.0, 1.0);
   return left * left * (3.0 - 2.0 * left);
 }
@@ -221,9 +241,44 @@ void Simulation::check_speeds() const {
   for (const ModelBody& body : model_.bodies()) {
     const RigidState s = read_state(body.id);
     const double speed = s.linear_velocity.norm();
-    if (!(speed < kRunaway) || !s.position.allFinite() || !s.angular_velocity.allFinite())
+    if (!(speed < kRunaway) || !s.position.allFinite() || !s.angular_velocity.allFinite() ||
+        !s.rotation.coeffs().allFinite())
       throw Diverged{body.segment, time_s(), speed};
   }
+  for (const dBodyID prop : stage_.bodies()) {
+    const RigidState s = read_state(prop);
+    if (!s.position.allFinite() || !s.linear_velocity.allFinite() || !s.rotation.coeffs().allFinite())
+      throw fastest("what hits it is nowhere any more");
+  }
+}
+
+/// The segment that was fastest at the end of the last good step.
+Diverged Simulation::fastest(std::string how) const {
+  Diverged result{Segment::pelvis, time_s(), 0.0, std::move(how)};
+  for (std::size_t i = 0; i < std::min(saved_.size(), model_.bodies().size()); ++i) {
+    const double speed = saved_[i].linear_velocity.norm();
+    if (speed > result.speed) {
+      result.segment = model_.bodies()[i].segment;
+      result.speed = speed;
+    }
+  }
+  return result;
+}
+
+void Simulation::watch_energy() {
+  if (torn_ || recorder_.energy_gain_j() < most_energy_j_) return;
+  torn_ = fastest(fmt::format("{:.3g} J came from nowhere", recorder_.energy_gain_j()));
+}
+
+void Simulation::watch_joints(double worst_separation) {
+  if (torn_ || worst_separation < torn_apart_) return;
+  const auto farthest = std::max_element(model_.joints().begin(), model_.joints().end(),
+                                         [this](const ModelJoint& a, const ModelJoint& b) {
+                                           return model_.separation(a) < model_.separation(b);
+                                         });
+  const ModelBody& child = model_.bodies()[farthest->child];
+  torn_ = Diverged{child.segment, time_s(), vec3(dBodyGetLinearVel(child.id)).norm(),
+                   fmt::format("it is {:.2g} m off its joint", worst_separation)};
 }
 
 std::vector<double> Simulation::joint_excesses() const {
@@ -304,7 +359,9 @@ bool Simulation::try_step(int ticks) {
     return false;
   }
   if (judged_ != nullptr) excesses = judged_excesses();
+  watch_joints(separation);
   const double projected = project(worst);
+  check_speeds();
   Contacts next = collision_.find();
   if (can_halve && sinks(next)) {
     restore();
@@ -337,6 +394,7 @@ void Simulation::accept(int ticks, const std::vector<double>& excesses, double p
   contacts_ = std::move(next);
   recorder_.excess_of_step(excesses, projected);
   recorder_.step(time_s(), h, contacts_, stage_.prop_energy(), work, separation);
+  watch_energy();
   calm_steps_ = worst_joint_speed() < kCalmSpeed ? calm_steps_ + 1 : 0;
   watch_rest(ticks);
   before_ = now_;
@@ -391,6 +449,7 @@ std::vector<Rigid> Simulation::prop_poses() const {
 
 void Simulation::run(Diagnostics& diagnostics) {
   stage_.begin(diagnostics);
+  check_speeds();
   recorder_.momentum(stage_.momentum_n_s());
   trajectory_.fps = settings_.fps;
   trajectory_.props = stage_.props();
@@ -399,8 +458,17 @@ void Simulation::run(Diagnostics& diagnostics) {
   contacts_ = collision_.find();
   now_ = before_ = model_.segments();
   props_now_ = props_before_ = prop_poses();
+  most_energy_j_ += kBlowShare * std::abs(stage_.prop_energy());
   recorder_.step(0.0, 0.0, contacts_, stage_.prop_energy(), 0.0, 0.0);
   add_frames_until(0.0);
+  try {
+    run_to_end();
+  } catch (const OdeFailure& failure) {
+    throw fastest(fmt::format("the physics engine failed: {}", failure.what()));
+  }
+}
+
+void Simulation::run_to_end() {
   const long end = std::lround(std::ceil(settings_.duration_s / stepping_.tick_s - 1e-6));
   while (ticks_ < end && !(resting_ && settings_.stop_at_rest && stepping_.adaptive)) {
     const bool on_calm_grid = ticks_ % stepping_.calm_ticks == 0;
@@ -422,24 +490,6 @@ SimulationResult Simulation::result() {
   return result;
 }
 
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
-
-std::optional<Error> refuse(const SimulationSettings& settings, const Scene& scene) {
-  if (!(settings.duration_s > 0.0)) return usage("the duration must be above 0 s", "give --duration");
-  if (!(settings.fps > 0.0)) return usage("the frame rate must be above 0", "give --fps");
-  if (settings.fixed_hz < 0.0) return usage("the rate must be above 0 Hz", "give --rate fixed:480");
-  const double h = settings.fixed_hz > 0.0 ? 1.0 / settings.fixed_hz : 1.0 / 120.0;
-  if (settings.active == Active::explicit_torque && settings.active_k * h > kMaxExplicitGain)
-    return usage(
-        fmt::format("the explicit active restriction is unstable at k = {:g} 1/s with steps of {:.4g} s",
-                    settings.active_k, h),
-        fmt::format("use --active implicit, k up to {:g}, or a higher --rate", kMaxExplicitGain / h));
-  if (!(scene.direction.norm() > 0.5)) return usage("the blow has no direction", "give --from");
-  return std::nullopt;
-}
-
 }  // namespace
 
 double tone_of(const SimulationSettings& settings) {
@@ -451,15 +501,34 @@ double damping_of(const SimulationSettings& settings) {
 
 namespace {
 
+Error error_of(const Diverged& diverged) {
+  const std::string speed =
+      fmt::format("the simulation diverged at {:.3f} s: {:.3g} m/s", diverged.time_s, diverged.speed);
+  return {ErrorKind::simulation,
+          "",
+          0,
+          0,
+          std::string(name(diverged.segment)),
+          diverged.how.empty() ? speed : fmt::format("{}, {}", speed, diverged.how),
+          "use a weaker blow, a plausible --mass and --height, or --rate fixed:960"};
+}
+
+/// A run, and what came apart in it.
+struct Attempt {
+  Trial trial;
+  std::optional<Error> torn;
+};
+
 /// Runs a scene; a run that fails leaves what it has.
-Result<Trial> try_scene(const ArticulatedBody& body, const RangeOfMotion& range, const RangeOfMotion* judged,
-                        const StartState& start, const Scene& scene, const SimulationSettings& settings,
-                        Diagnostics& diagnostics) {
-  if (const auto refused = refuse(settings, scene)) return *refused;
+Result<Attempt> try_scene(const ArticulatedBody& body, const RangeOfMotion& range,
+                          const RangeOfMotion* judged, const StartState& start, const Scene& scene,
+                          const SimulationSettings& settings, int refinement, Diagnostics& diagnostics) {
+  if (const auto fault = fault_of(body, range, start, scene, settings)) return *fault;
   Result<ActiveThresholds> thresholds = load_active_thresholds(settings.active_file);
   if (!thresholds) return thresholds.error();
   std::unique_ptr<Simulation> simulation;
-  Trial trial;
+  Attempt attempt;
+  Trial& trial = attempt.trial;
   try {
     static const bool look_ahead = look_ahead_works();
     if (!look_ahead && settings.limits == Limits::edges)
@@ -470,32 +539,39 @@ Result<Trial> try_scene(const ArticulatedBody& body, const RangeOfMotion& range,
                    "",
                    "this version of ODE does not take stops ahead as limits (StopERP -1), as 0.16.2 does",
                    "build with ODE 0.16.2, or use --limits segments"};
-    simulation = std::make_unique<Simulation>(body, range, judged, *thresholds, start, scene, settings);
+    simulation =
+        std::make_unique<Simulation>(body, range, judged, *thresholds, start, scene, settings, refinement);
     simulation->run(diagnostics);
   } catch (const Diverged& diverged) {
-    trial.failure =
-        Error{ErrorKind::simulation,
-              "",
-              0,
-              0,
-              std::string(name(diverged.segment)),
-              fmt::format("the simulation diverged at {:.3f} s: {:.3g} m/s", diverged.time_s, diverged.speed),
-              "use a weaker blow, a plausible --mass and --height, or --rate fixed:960"};
+    trial.failure = error_of(diverged);
   } catch (const OdeFailure& failure) {
-    if (simulation) simulation->poison();
     trial.failure = Error{ErrorKind::simulation,
                           "",
                           0,
                           0,
                           "",
-                          fmt::format("the physics engine failed: {}", failure.what()),
+                          fmt::format("the physics engine cannot begin: {}", failure.what()),
                           "use a weaker blow, or a plausible --mass and --height"};
   }
   if (!simulation) return *trial.failure;
   trial.result = simulation->result();
   trial.excesses = simulation->excesses();
   trial.simulated_s = simulation->time_s();
-  return trial;
+  if (simulation->torn()) attempt.torn = error_of(*simulation->torn());
+  return attempt;
+}
+
+}  // namespace
+
+namespace {
+
+void warn_of_sinking(const SimulationFigures& figures, double height_m, Diagnostics& diagnostics) {
+  constexpr double kWorstShare = 0.02;  // of the height
+  if (figures.floor_penetration_max_m < kWorstShare * height_m) return;
+  diagnostics.warn(
+      "", fmt::format("the body sinks {:.2g} m into the floor: give a plausible --mass and --height, or a "
+                      "higher --rate",
+                      figures.floor_penetration_max_m));
 }
 
 }  // namespace
@@ -503,16 +579,27 @@ Result<Trial> try_scene(const ArticulatedBody& body, const RangeOfMotion& range,
 Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMotion& range,
                                   const StartState& start, const Scene& scene,
                                   const SimulationSettings& settings, Diagnostics& diagnostics) {
-  auto trial = try_scene(body, range, nullptr, start, scene, settings, diagnostics);
-  if (!trial) return trial.error();
-  if (trial->failure) return *trial->failure;
-  return std::move(trial->result);
+  constexpr int kRefined = 2;
+  for (int refinement = 1;; refinement *= kRefined) {
+    auto attempt = try_scene(body, range, nullptr, start, scene, settings, refinement, diagnostics);
+    if (!attempt) return attempt.error();
+    const std::optional<Error>& failure = attempt->trial.failure ? attempt->trial.failure : attempt->torn;
+    if (!failure) {
+      warn_of_sinking(attempt->trial.result.figures, body.height_m, diagnostics);
+      return std::move(attempt->trial.result);
+    }
+    if (refinement == kRefined) return *failure;
+    diagnostics.warn(failure->joint, failure->what + "; it is run again at twice the rate");
+  }
 }
 
 Result<Trial> simulate_trial(const ArticulatedBody& body, const RangeOfMotion& range,
                              const RangeOfMotion& judged, const StartState& start, const Scene& scene,
                              const SimulationSettings& settings, Diagnostics& diagnostics) {
-  return try_scene(body, range, &judged == &range ? nullptr : &judged, start, scene, settings, diagnostics);
+  auto attempt =
+      try_scene(body, range, &judged == &range ? nullptr : &judged, start, scene, settings, 1, diagnostics);
+  if (!attempt) return attempt.error();
+  return std::move(attempt->trial);
 }
 
 }  // namespace ukemi

@@ -103,7 +103,10 @@ struct SimulationResult {
 };
 
 /// Runs the scene on the body. The body holds still until the blow arrives at time 0: the ball starts
-/// touching. Errors: simulation (diverged: segment, time, speed), usage (settings out of range).
+/// touching. A run that diverges (a segment faster than 100 m/s, a joint apart by more than 11.5 % of the
+/// height, a failure of the engine) is run again at twice the rate, with a warning. Errors: simulation
+/// (diverged again: segment, time, speed), usage (settings out of range), input (body, start or range that
+/// nothing can be run with).
 Result<SimulationResult> simulate(const ArticulatedBody& body, const RangeOfMotion& range,
                                   const StartState& start, const Scene& scene,
                                   const SimulationSettings& settings, Diagnostics& diagnostics);

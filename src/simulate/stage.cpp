@@ -129,7 +129,8 @@ void Stage::begin_slope(Diagnostics& diagnostics) {
                        fmt::format("the ball meets the {} first", name(touch->segment)));
   }
   const double height = 0.7 * scene_.ball_speed_m_s * scene_.ball_speed_m_s / gravity_;
-  const double length = std::clamp(height / std::sin(scene_.slope_rad), 4.0 * r, kLongestRamp);
+  const double length =
+      std::clamp(height / std::sin(scene_.slope_rad), 4.0 * r, std::max(4.0 * r, kLongestRamp));
   const Vec3 centre = foot - 0.5 * length * down - 0.5 * kRampThickness * normal;
   const Vec3 size(length, kRampThickness, 6.0 * r);
   const dGeomID ramp = dCreateBox(nullptr, size.x(), size.y(), size.z());

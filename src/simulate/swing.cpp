@@ -72,7 +72,6 @@ Result<std::vector<SwingTwist>> swing_joint(const JointRange& range, const Swing
                      "choose a gentler pull"};
     return charts;
   } catch (const OdeFailure& failure) {
-    world.poison();
     return Error{ErrorKind::simulation, "", 0, 0, "", failure.what(), "choose other limits"};
   }
 }

@@ -1,7 +1,9 @@
 #include "base/files.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -17,6 +19,16 @@ class Files : public testing::Test {
     folder = pattern;
   }
   void TearDown() override { fs::remove_all(folder); }
+  std::string content(const char* name) const {
+    const auto bytes = read_file(folder / name, 1000);
+    return bytes ? std::string(bytes->begin(), bytes->end()) : bytes.error().what;
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const auto& entry : fs::directory_iterator(folder)) found.push_back(entry.path().filename());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
   fs::path folder;
 };
 
@@ -41,6 +53,66 @@ TEST_F(Files, FailedWriteLeavesTheOldFile) {
   EXPECT_EQ(write_file(folder / "target", std::string_view("x")).error().kind, ErrorKind::output);
   EXPECT_EQ(write_file(folder / "no" / "such", std::string_view("x")).error().kind, ErrorKind::output);
   EXPECT_TRUE(fs::is_directory(folder / "target"));
+}
+
+TEST_F(Files, SeveralAppearTogetherOrNotAtAll) {
+  ASSERT_TRUE(write_file(folder / "a", std::string_view("old")));
+  fs::create_directory(folder / "b");
+  {
+    PendingFiles files;
+    ASSERT_TRUE(files.add(folder / "a", std::string_view("new")));
+    EXPECT_FALSE(files.add(folder / "b", std::string_view("new")));
+  }
+  EXPECT_EQ(content("a"), "old");
+  EXPECT_EQ(names(), (std::vector<std::string>{"a", "b"}));
+  PendingFiles files;
+  ASSERT_TRUE(files.add(folder / "a", std::string_view("new")));
+  ASSERT_TRUE(files.add(folder / "c", std::string_view("new")));
+  EXPECT_EQ(content("a"), "old");
+  ASSERT_TRUE(files.commit());
+  EXPECT_EQ(content("a"), "new");
+  EXPECT_EQ(content("c"), "new");
+  EXPECT_EQ(names(), (std::vector<std::string>{"a", "b", "c"}));
+}
+
+TEST_F(Files, ALinkStaysALinkAndPermissionsStay) {
+  ASSERT_TRUE(write_file(folder / "real", std::string_view("old")));
+  fs::permissions(folder / "real", fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("real", folder / "link");
+  ASSERT_TRUE(write_file(folder / "link", std::string_view("new")));
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(content("real"), "new");
+  EXPECT_EQ(fs::status(folder / "real").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(Files, ADeviceOrPipeIsNeverReplaced) {
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(write_file(folder / "pipe", std::string_view("x")).error().what,
+            "cannot write: is not a regular file");
+  EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+}
+
+TEST_F(Files, LongNamesAreWrittenAndTooLongOnesRefused) {
+  EXPECT_TRUE(write_file(folder / std::string(255, 'a'), std::string_view("x")));
+  EXPECT_EQ(write_file(folder / std::string(300, 'a'), std::string_view("x")).error().kind,
+            ErrorKind::output);
+}
+
+TEST_F(Files, BelowAFolderIsOnlyWhatLinksDoNotLeadOut) {
+  fs::create_directories(folder / "in" / "deep");
+  ASSERT_TRUE(write_file(folder / "secret", std::string_view("x")));
+  ASSERT_TRUE(write_file(folder / "in" / "deep" / "own", std::string_view("x")));
+  fs::create_symlink(folder / "secret", folder / "in" / "leak");
+  fs::create_symlink("..", folder / "in" / "up");
+  fs::create_symlink("deep/own", folder / "in" / "fine");
+  const fs::path in = folder / "in";
+  EXPECT_TRUE(file_below(in, "deep/own"));
+  EXPECT_TRUE(file_below(in, "./deep/own"));
+  EXPECT_TRUE(file_below(in, "fine"));
+  EXPECT_TRUE(file_below(in, "none"));
+  for (const char* out : {"", "..", "../secret", "deep/../../secret", "/etc/passwd", "leak", "up/secret"})
+    EXPECT_FALSE(file_below(in, out)) << out;
+  EXPECT_FALSE(file_below(in, std::string("deep\0/own", 9)));
 }
 
 }  // namespace

@@ -70,5 +70,20 @@ TEST(Segments, EverySegmentHasItsJointAndItsMirror) {
   EXPECT_EQ(mirror_of(Joint::knee_l), Joint::knee_r);
 }
 
+TEST(Animation, ADayIsSampledAsOftenAsMemoryAllows) {
+  const Skeleton skeleton = [] {
+    Skeleton made = chain(std::vector<int>(50, -1));
+    EXPECT_TRUE(made.sort());
+    return made;
+  }();
+  Animation day{"day", 0.0, 86400.0, 0.0, {}};
+  day.tracks.push_back(
+      {0, TrackPath::translation, Interpolation::linear, {0.0, 86400.0}, {0, 0, 0, 1, 0, 0}});
+  const Clip clip = sample_clip(skeleton, day, 60.0);
+  EXPECT_EQ(clip.frames.size(), 100001u);
+  EXPECT_NEAR(clip.duration_s(), 86400.0, 1e-6);
+  EXPECT_NEAR(clip.frames.back()[0].translation.x(), 1.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace ukemi

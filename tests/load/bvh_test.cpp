@@ -192,6 +192,14 @@ TEST(Bvh, RefusesWithTheLine) {
   }
 }
 
+TEST(Bvh, RefusesAClipLongerThanADay) {
+  std::string text = kHierarchy + kMotion;
+  text.replace(text.find("0.0083333"), 9, "86400");
+  const auto c = read(text);
+  ASSERT_FALSE(c);
+  EXPECT_NE(c.error().what.find("longer than a day"), std::string::npos) << c.error().what;
+}
+
 TEST(Bvh, RefusesAnAbsurdDepth) {
   std::string text = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n";
   for (int i = 0; i < 2000; ++i) text += "JOINT b\n{\nOFFSET 0 0 0\n";

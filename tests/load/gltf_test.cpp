@@ -396,6 +396,30 @@ TEST(Gltf, RefusesJointsBeyondTheSkinNegativeWeightsAndTimesThatStandStill) {
       << read(still.glb()).error().what;
 }
 
+TEST(Gltf, AThousandNodesInARowAreReadMoreRefused) {
+  for (const int count : {1000, 1001}) {
+    Document d;
+    for (int i = 0; i < count; ++i) {
+      d.json["nodes"].push_back({{"name", "n"}});
+      if (i > 0) d.json["nodes"][static_cast<std::size_t>(i - 1)]["children"] = {i};
+    }
+    const auto c = read(d.gltf());
+    ASSERT_EQ(static_cast<bool>(c), count == 1000);
+    if (!c) {
+      EXPECT_EQ(c.error().what, "nodes[1000] is nested deeper than 1000");
+    }
+  }
+}
+
+TEST(Gltf, AClipLongerThanADayIsRefused) {
+  Document d = skinned_square();
+  d.json["animations"][0]["samplers"][0]["input"] = d.floats({0.0f, 1.0f, 86500.0f}, "SCALAR", 1);
+  const auto c = read(d.glb());
+  ASSERT_FALSE(c);
+  EXPECT_NE(c.error().what.find("the last time is 86500 s, later than a day"), std::string::npos)
+      << c.error().what;
+}
+
 TEST(Gltf, SyntaxErrorsHaveLineAndColumn) {
   const auto c = read("{\n \"asset\": {\"version\": \"2.0\"},\n \"nodes\": [ {} {} ]\n}");
   ASSERT_FALSE(c);
@@ -514,6 +538,15 @@ TEST_F(GltfFiles, UrisThatLeaveTheFolderAreRefused) {
           << c.error().what;
       EXPECT_NE(c.error().what.find("not a file beside the document"), std::string::npos) << c.error().what;
     }
+  }
+}
+
+TEST_F(GltfFiles, LinksThatLeaveTheFolderAreRefused) {
+  fs::create_symlink(folder / "outside.bin", folder / "model" / "link.bin");
+  for (const char* kind : {"buffers", "images"}) {
+    const auto c = load_with_uri("link.bin", kind);
+    ASSERT_FALSE(c) << kind;
+    EXPECT_NE(c.error().what.find("not a file beside the document"), std::string::npos) << c.error().what;
   }
 }
 

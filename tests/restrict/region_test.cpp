@@ -2,6 +2,8 @@
 
 #include <toml++/toml.h>
 
+#include <filesystem>
+#include <fstream>
 #include <random>
 
 #include "restrict/range_of_motion.h"
@@ -26,6 +28,15 @@ TEST(Region, AllThreeLoadWithSeventeenJoints) {
       EXPECT_LT(polygon_distance(joint.polygon, Vec2::Zero()), 0.0);
     }
   }
+}
+
+TEST(Region, AFileThatIsBasedOnItselfIsRefused) {
+  const std::string file = testing::TempDir() + "ukemi_region_of_itself.toml";
+  std::ofstream(file) << "base = \"" << file << "\"\n" << kElbow;
+  const auto range = load_range_of_motion(file);
+  std::filesystem::remove(file);
+  ASSERT_FALSE(range);
+  EXPECT_EQ(range.error().what, "more than 8 regions are based on one another");
 }
 
 TEST(Region, LeftIsTheMirrorOfRight) {
