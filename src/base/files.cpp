@@ -32,16 +32,23 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// A new file in `folder`, under a name that no other process or call has: descriptor and name, or -1.
-std::pair<int, fs::path> open_new_file(const fs::path& folder) {
+/// Calls `make` with names in `folder` until one is new: that name, or nothing (errno says why).
+template <typename Make>
+fs::path with_new_name(const fs::path& folder, const Make& make) {
   static std::atomic<unsigned> counter = 0;
   constexpr int kTries = 1000;  // names that killed processes left behind
   for (int i = 0; i < kTries; ++i) {
     fs::path path = folder / (".ukemi-" + std::to_string(getpid()) + '-' + std::to_string(counter++));
-    const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (fd >= 0 || errno != EEXIST) return {fd, std::move(path)};
+    if (make(path.c_str())) return path;
+    if (errno != EEXIST) break;
   }
-  return {-1, {}};
+  return {};
+}
+
+/// Gives a file without a name one.
+bool link_as(int fd, const char* path) {
+  const std::string self = "/proc/self/fd/" + std::to_string(fd);
+  return linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path, AT_SYMLINK_FOLLOW) == 0;
 }
 
 bool write_all(int fd, std::span<const std::uint8_t> bytes) {
@@ -94,32 +101,51 @@ Result<std::vector<std::uint8_t>> read_file(const fs::path& path, std::size_t ma
 }
 
 PendingFiles::~PendingFiles() {
-  for (const Pending& file : files_) unlink(file.temporary.c_str());
+  for (const Pending& file : files_) {
+    close(file.descriptor);
+    if (!file.temporary.empty()) unlink(file.temporary.c_str());
+  }
 }
 
 Status PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes) {
   const fs::path target = followed(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   struct stat info {};
   const bool exists = stat(target.c_str(), &info) == 0;
   if (exists && !S_ISREG(info.st_mode))
     return output_error(path, S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file");
-  const auto [fd, temporary] = open_new_file(target.parent_path());
-  if (fd < 0) return output_error(path, std::strerror(errno));
-  files_.push_back({path, target, temporary});
-  const bool written = write_all(fd, bytes) && (!exists || fchmod(fd, info.st_mode & 0777) == 0);
-  const int error = errno;
-  const bool closed = close(fd) == 0;
-  if (written && closed) return Done{};
-  return output_error(path, std::strerror(written ? errno : error));
+  Pending file{path, target, {}, open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666)};
+  if (file.descriptor < 0)  // a file system without nameless files
+    file.temporary = with_new_name(folder, [&](const char* name) {
+      file.descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      return file.descriptor >= 0;
+    });
+  if (file.descriptor < 0) return output_error(path, std::strerror(errno));
+  files_.push_back(file);
+  const bool written =
+      write_all(file.descriptor, bytes) && (!exists || fchmod(file.descriptor, info.st_mode & 0777) == 0);
+  if (!written) return output_error(path, std::strerror(errno));
+  return Done{};
 }
 
 Status PendingFiles::add(const fs::path& path, std::string_view text) { return add(path, bytes_of(text)); }
 
+/// Puts the file in its place. A name in the way cannot be linked over, only renamed over.
+bool PendingFiles::place(Pending& file) {
+  if (file.temporary.empty() && link_as(file.descriptor, file.target.c_str())) return true;
+  if (file.temporary.empty())
+    file.temporary = with_new_name(file.target.parent_path(),
+                                   [&](const char* name) { return link_as(file.descriptor, name); });
+  if (file.temporary.empty() || std::rename(file.temporary.c_str(), file.target.c_str()) != 0) return false;
+  file.temporary.clear();
+  return true;
+}
+
 Status PendingFiles::commit() {
   while (!files_.empty()) {
-    const Pending& file = files_.front();
-    if (std::rename(file.temporary.c_str(), file.target.c_str()) != 0)
-      return output_error(file.path, std::strerror(errno));
+    Pending& file = files_.front();
+    if (!place(file)) return output_error(file.path, std::strerror(errno));
+    close(file.descriptor);
     files_.erase(files_.begin());
   }
   return Done{};

@@ -21,9 +21,9 @@ Result<std::vector<std::uint8_t>> read_file(const std::filesystem::path& path, s
 Status write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Status write_file(const std::filesystem::path& path, std::string_view text);
 
-/// Files that appear together. What is added lies beside its target under a name of its own until commit()
-/// renames it; what is not committed is removed. A name that is a link is followed and stays one; a file that
-/// is replaced keeps its permissions.
+/// Files that appear together. What is added has no name until commit() and vanishes with the process (on
+/// file systems without such files it lies beside its target under a name of its own). A name that is a link
+/// is followed and stays one; a file that is replaced keeps its permissions.
 class PendingFiles {
  public:
   PendingFiles() = default;
@@ -39,8 +39,12 @@ class PendingFiles {
 
  private:
   struct Pending {
-    std::filesystem::path path, target, temporary;  // as the user wrote it; links followed; until then
+    std::filesystem::path path;       // as the user wrote it
+    std::filesystem::path target;     // links followed
+    std::filesystem::path temporary;  // empty: nameless
+    int descriptor = -1;
   };
+  static bool place(Pending& file);
   std::vector<Pending> files_;
 };
 
