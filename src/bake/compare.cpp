@@ -8,16 +8,12 @@
 #include <cmath>
 #include <ctime>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "bake/random.h"
-#include "bake/report.h"
 
 namespace ukemi {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kJudgedRegion = "human";
 constexpr double kYardstickHz = 480.0;
@@ -102,6 +98,9 @@ MethodFigures figures_of(const Method& method, const std::vector<Run>& runs) {
     sum.over_1deg += run.limits.over_1deg;
     sum.excess_max_by_hit_deg.push_back(run.limits.excess_max_deg);
     sum.exploded_hits.push_back(run.exploded);
+    sum.angular_momentum_by_hit_kg_m2_s.push_back(run.figures.angular_momentum_mean_kg_m2_s);
+    sum.airborne_by_hit_s.push_back(run.figures.airborne_mean_s);
+    sum.turning_by_hit_rad_s.push_back(run.figures.turning_mean_rad_s);
     excesses.insert(excesses.end(), run.excesses.begin(), run.excesses.end());
     if (run.limits.excess_max_deg > sum.excess_max_deg) {
       sum.excess_max_deg = run.limits.excess_max_deg;
@@ -119,10 +118,12 @@ MethodFigures figures_of(const Method& method, const std::vector<Run>& runs) {
     ++whole;
     sum.angular_momentum_mean_kg_m2_s += run.figures.angular_momentum_mean_kg_m2_s;
     sum.airborne_mean_s += run.figures.airborne_mean_s;
+    sum.turning_mean_rad_s += run.figures.turning_mean_rad_s;
   }
   sum.excess_p999_deg = p999_deg(excesses, sum.samples);
   sum.angular_momentum_mean_kg_m2_s /= std::max(whole, 1);
   sum.airborne_mean_s /= std::max(whole, 1);
+  sum.turning_mean_rad_s /= std::max(whole, 1);
   if (steps > 0.0) sum.us_per_step = 1e6 * cpu_s / steps;
   if (simulated_s > 0.0) sum.cpu_s_per_s = cpu_s / simulated_s;
   return sum;
@@ -139,11 +140,6 @@ SimulationSettings of_the_paper(Limits limits, Active active, double k, double d
   settings.stop_at_rest = false;
   settings.duration_s = duration_s;
   return settings;
-}
-
-double share(const MethodFigures& figures) {
-  return figures.samples > 0 ? static_cast<double>(figures.over_1deg) / static_cast<double>(figures.samples)
-                             : 0.0;
 }
 
 }  // namespace
@@ -246,114 +242,28 @@ Result<Comparison> compare(const std::string& character, const Character& loaded
   return comparison;
 }
 
-std::string comparison_json(const Comparison& comparison) {
-  Json json;
-  json["format"] = 1;
-  json["generator"] = generator();
-  json["character"] = comparison.character;
-  json["hits"] = comparison.settings.hits;
-  json["seed"] = comparison.settings.seed;
-  json["region"] = comparison.settings.region;
-  json["widened_deg"] = Json::object();
-  for (const auto& [joint, angle] : comparison.widened)
-    json["widened_deg"][std::string(name(joint))] = degrees(angle);
-  json["methods"] = Json::array();
-  for (const MethodFigures& figures : comparison.methods) {
-    Json method;
-    method["method"] = figures.method.name;
-    method["limits"] = name(figures.method.simulation.limits);
-    method["active"] = name(figures.method.simulation.active);
-    method["samples"] = figures.samples;
-    method["over_1deg"] = figures.over_1deg;
-    method["excess_p999_deg"] = figures.excess_p999_deg;
-    method["excess_max_deg"] = figures.excess_max_deg;
-    method["worst_joint"] = figures.worst_joint ? Json(name(*figures.worst_joint)) : Json(nullptr);
-    method["joint_separation_max_m"] = figures.joint_separation_max_m;
-    method["energy_gain_max_j"] = figures.energy_gain_max_j;
-    method["exploded"] = figures.exploded;
-    method["angular_momentum_mean_kg_m2_s"] = figures.angular_momentum_mean_kg_m2_s;
-    method["airborne_mean_s"] = figures.airborne_mean_s;
-    method["us_per_step"] = figures.us_per_step;
-    method["cpu_s_per_s"] = figures.cpu_s_per_s;
-    json["methods"].push_back(std::move(method));
+PairedChange paired_change(const MethodFigures& method, const MethodFigures& other,
+                           std::vector<double> MethodFigures::*by_hit) {
+  constexpr double kStandardErrors = 1.96;
+  PairedChange change;
+  double count = 0.0, sum = 0.0, squares = 0.0, others = 0.0;
+  for (std::size_t i = 0; i < (method.*by_hit).size(); ++i) {
+    if (method.exploded_hits[i] || other.exploded_hits[i]) continue;
+    const double difference = (method.*by_hit)[i] - (other.*by_hit)[i];
+    if (difference < 0.0) ++change.less;
+    if (difference > 0.0) ++change.more;
+    count += 1.0;
+    sum += difference;
+    squares += difference * difference;
+    others += (other.*by_hit)[i];
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-namespace {
-
-/// "0", "0.00012 %", "3.41 %"
-std::string percent(double share) {
-  if (share <= 0.0) return "0";
-  return share < 0.001 ? fmt::format("{:.2g} %", 100.0 * share) : fmt::format("{:.2f} %", 100.0 * share);
-}
-
-std::string joules(double value) {
-  return value < 1e5 ? fmt::format("{:.1f}", value) : fmt::format("{:.1e}", value);
-}
-
-std::vector<std::string> table_row(const MethodFigures& figures) {
-  return {figures.method.name,
-          fmt::format("{}", figures.samples),
-          fmt::format("{}", figures.over_1deg),
-          percent(share(figures)),
-          fmt::format("{:.3f}", figures.excess_p999_deg),
-          fmt::format("{:.2f}", figures.excess_max_deg),
-          figures.worst_joint ? std::string(name(*figures.worst_joint)) : "-",
-          fmt::format("{:.1f}", 1000.0 * figures.joint_separation_max_m),
-          joules(figures.energy_gain_max_j),
-          fmt::format("{}", figures.exploded),
-          fmt::format("{:.2f}", figures.angular_momentum_mean_kg_m2_s),
-          fmt::format("{:.3f}", figures.airborne_mean_s),
-          fmt::format("{:.0f}", figures.us_per_step),
-          fmt::format("{:.3f}", figures.cpu_s_per_s)};
-}
-
-/// Columns as wide as their longest entry; words to the left, numbers to the right.
-std::string aligned(const std::vector<std::vector<std::string>>& rows, const std::vector<bool>& words) {
-  std::vector<std::size_t> widths(words.size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  std::string text;
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i)
-      line +=
-          words[i] ? fmt::format("{:<{}}  ", row[i], widths[i]) : fmt::format("{:>{}}  ", row[i], widths[i]);
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string comparison_text(const Comparison& comparison) {
-  std::vector<std::vector<std::string>> rows = {{"method", "joint", "over", "", "p99.9", "max", "worst",
-                                                 "apart", "gain", "ex-", "spin", "in air", "us per", "cpu s"},
-                                                {"", "samples", "1 deg", "", "deg", "deg", "joint", "mm", "J",
-                                                 "ploded", "kg m2/s", "s", "step", "per s"}};
-  for (const MethodFigures& figures : comparison.methods) rows.push_back(table_row(figures));
-  std::vector<bool> words(rows.front().size(), false);
-  words[0] = words[6] = true;
-  std::string text = fmt::format(
-      "{}: {} random hits (seed {}), methods in the region {}, judged against human\n\n",
-      comparison.character, comparison.settings.hits, comparison.settings.seed, comparison.settings.region);
-  text += aligned(rows, words);
-  for (const auto& [joint, angle] : comparison.widened)
-    text += fmt::format("{} widened by {:.1f} degrees to hold the start pose\n", name(joint), degrees(angle));
-  return text +
-         "\nover 1 deg, p99.9, max: how far joints lie outside the human range, every step, before any "
-         "clean-up\n"
-         "apart: joint separation; gain: energy without cause; exploded: diverged, gain above 1000 J or "
-         "apart "
-         "above 200 mm\n"
-         "spin: angular momentum in the second after the hit, in air: time without ground contact; means of "
-         "the hits that did not explode\n"
-         "a: each axis on its own; b: chords of the polygon, as exact rows, -euler: as stops of Euler "
-         "angles;\n"
-         "c: b and active restriction, k = 20 1/s, -k1: k = 1; ours: the default bake, -limp: without tone "
-         "and damping\n";
+  if (count < 2.0 || !(others > 0.0)) return change;
+  const double variance = std::max(squares - sum * sum / count, 0.0) / (count - 1.0);
+  const double half = kStandardErrors * std::sqrt(variance * count) / others;
+  change.fraction = sum / others;
+  change.low = change.fraction - half;
+  change.high = change.fraction + half;
+  return change;
 }
 
 }  // namespace ukemi

@@ -65,11 +65,22 @@ struct MethodFigures {
   // Means over the hits that did not explode.
   double angular_momentum_mean_kg_m2_s = 0.0;  // about the body's centre of mass, in the second after the hit
   double airborne_mean_s = 0.0;                // without ground contact
+  double turning_mean_rad_s = 0.0;             // RMS of the segments' angular velocities in that second
   double us_per_step = 0.0;                    // thread's CPU time
   double cpu_s_per_s = 0.0;                    // and per simulated second
   std::vector<double> excess_max_by_hit_deg;
+  std::vector<double> angular_momentum_by_hit_kg_m2_s, airborne_by_hit_s, turning_by_hit_rad_s;
   std::vector<bool> exploded_hits;
 };
+
+/// A figure of one method against that of another over the same hits, those left out that exploded in either.
+struct PairedChange {
+  double fraction = 0.0;         // mean difference over the other's mean: -0.2 is a fifth less
+  double low = 0.0, high = 0.0;  // 95 % interval of it: 1.96 standard errors of the mean difference
+  int less = 0, more = 0;        // hits
+};
+PairedChange paired_change(const MethodFigures& method, const MethodFigures& other,
+                           std::vector<double> MethodFigures::*by_hit);
 
 /// Whether a run is no motion of a body any more: it diverged, gained more than 1000 J (a standing body has
 /// about 720 J to lose), or a joint came apart by more than 0.2 m.

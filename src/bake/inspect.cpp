@@ -25,15 +25,14 @@ std::vector<ClipInspection> clips_of(const Character& character) {
   return clips;
 }
 
-void check_poses(Inspection& inspection, const RangeOfMotion& range) {
+void check_poses(Inspection& inspection, const InspectSettings& settings, const RangeOfMotion& range) {
   const Character& character = *inspection.character;
   const Skeleton& skeleton = character.skeleton;
   const Humanoid& humanoid = *inspection.humanoid;
   inspection.rest = rom_figures(rom_paths(skeleton, humanoid, range, {rest_pose(skeleton)}));
   for (std::size_t i = 0; i < character.animations.size(); ++i) {
-    const auto stored = frames_in_extras(skeleton, character.animations[i].extras_json);
-    const Clip clip = clip_to_check(character, i);
-    inspection.clips[i].rom = rom_figures(rom_paths(skeleton, humanoid, range, clip.frames, stored));
+    const ClipToCheck clip{&character, i, settings.humanoid};
+    inspection.clips[i].rom = rom_figures(rom_paths(clip, humanoid, range));
   }
 }
 
@@ -50,6 +49,7 @@ Json rom_json(const std::optional<RomFigures>& rom) {
           {"excess_max_deg", rom->excess_max_deg},
           {"worst_joint", rom->worst_joint ? Json(name(*rom->worst_joint)) : Json(nullptr)},
           {"rolls", name(rom->rolls)},
+          {"neutral", rom->neutral_from_motion ? "motion" : "rest"},
           {"joints", std::move(joints)}};
 }
 
@@ -116,15 +116,16 @@ std::string_view name(Verdict verdict) {
 int exit_status(Verdict verdict) { return static_cast<int>(verdict); }
 
 double native_rate(const Animation& animation) {
+  constexpr std::size_t kStray = 500;  // one spacing in so many may be shorter
   if (animation.fps > 0.0) return animation.fps;
-  double spacing = 0.0;
+  std::vector<double> spacings;
   for (const Track& track : animation.tracks)
-    for (std::size_t i = 1; i < track.times.size(); ++i) {
-      const double step = track.times[i] - track.times[i - 1];
-      if (spacing == 0.0 || step < spacing) spacing = step;
-    }
-  if (spacing <= 0.0) return 0.0;
-  const double rate = 1.0 / spacing;
+    for (std::size_t i = 1; i < track.times.size(); ++i)
+      if (track.times[i] > track.times[i - 1]) spacings.push_back(track.times[i] - track.times[i - 1]);
+  if (spacings.empty()) return 0.0;
+  const auto least = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / kStray);
+  std::nth_element(spacings.begin(), least, spacings.end());
+  const double rate = 1.0 / *least;
   const double whole = std::round(rate);
   return std::abs(rate - whole) < 1e-3 * rate ? whole : rate;
 }
@@ -155,7 +156,7 @@ Result<Inspection> inspect(const std::string& file, const InspectSettings& setti
   inspection.verdict = Verdict::humanoid;
   inspection.reason = "every segment that a humanoid needs was found";
   inspection.humanoid = std::move(*humanoid);
-  check_poses(inspection, *range);
+  check_poses(inspection, settings, *range);
   return inspection;
 }
 

@@ -42,7 +42,7 @@ struct InspectSettings {
 };
 
 /// Frames per second of an animation: the file's, or that of its closest keys (a reduced clip leaves keys
-/// out).
+/// out), but for one in 500: some exporters add keys between frames.
 double native_rate(const Animation& animation);
 
 /// `file` may be "mannequin". A file that cannot be loaded is malformed, not an error. Errors: the region's.

@@ -144,6 +144,8 @@ Json simulation_json(const SimulationFigures& figures) {
   json["hash"] = figures.hash;
   json["angular_momentum_mean_kg_m2_s"] = figures.angular_momentum_mean_kg_m2_s;
   json["airborne_mean_s"] = figures.airborne_mean_s;
+  json["turning_mean_rad_s"] = figures.turning_mean_rad_s;
+  json["floor_penetration_end_m"] = figures.floor_penetration_end_m;
   return json;
 }
 

@@ -91,10 +91,9 @@ Result<RomCheck> check_clip(const RomSettings& settings, const RangeOfMotion& ra
   const auto humanoid = map_humanoid(*character, settings.humanoid, diagnostics);
   if (!humanoid) return humanoid.error();
   const Clip sampled = clip_to_check(*character, clip);
-  const auto stored = frames_in_extras(character->skeleton, character->animations[clip].extras_json);
   RomCheck check{*settings.check, sampled.name, sampled.fps, sampled.duration_s(), 0, {}, {}};
   check.frames = static_cast<long>(sampled.frames.size());
-  check.paths = rom_paths(character->skeleton, *humanoid, range, sampled.frames, stored);
+  check.paths = rom_paths(ClipToCheck{&*character, clip, settings.humanoid}, *humanoid, range);
   check.figures = rom_figures(check.paths);
   return check;
 }
@@ -386,6 +385,7 @@ std::string rom_json(const Rom& rom) {
                      {"frames", rom.check->frames},
                      {"duration_s", rom.check->duration_s},
                      {"rolls", name(figures.rolls)},
+                     {"neutral", figures.neutral_from_motion ? "motion" : "rest"},
                      {"over_1deg_fraction", figures.over_1deg_fraction},
                      {"over_5deg_fraction", figures.over_5deg_fraction},
                      {"excess_max_deg", figures.excess_max_deg},

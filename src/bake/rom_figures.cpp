@@ -74,6 +74,22 @@ RomPaths rom_paths(const Skeleton& skeleton, const Humanoid& humanoid, const Ran
                                                                                            : canonical;
 }
 
+RomPaths rom_paths(const ClipToCheck& clip, const Humanoid& humanoid, const RangeOfMotion& range) {
+  const Character& character = *clip.character;
+  const std::vector<Pose> poses = clip_to_check(character, clip.animation).frames;
+  const auto stored = frames_in_extras(character.skeleton, character.animations[clip.animation].extras_json);
+  RomPaths paths = rom_paths(character.skeleton, humanoid, range, poses, stored);
+  if (stored || !is_motion_only(character) || !clip.options.neutral_from_motion) return paths;
+  paths.neutral_from_motion = true;
+  HumanoidOptions options = clip.options;
+  options.neutral_from_motion = false;
+  Diagnostics said;
+  const auto at_rest = map_humanoid(character, options, said);
+  if (!at_rest) return paths;
+  RomPaths rest = rom_paths(character.skeleton, *at_rest, range, poses);
+  return rom_figures(rest).over_1deg_fraction < rom_figures(paths).over_1deg_fraction ? rest : paths;
+}
+
 JointRomFigures rom_figures(const JointPath& path) {
   JointRomFigures figures;
   if (path.excess_deg.empty()) return figures;
@@ -91,6 +107,7 @@ JointRomFigures rom_figures(const JointPath& path) {
 RomFigures rom_figures(const RomPaths& paths) {
   RomFigures figures;
   figures.rolls = paths.rolls;
+  figures.neutral_from_motion = paths.neutral_from_motion;
   int moving = 0;
   for (int j = 0; j < kJointCount; ++j) {
     if (paths.joints[j].charts.empty()) continue;

@@ -30,6 +30,7 @@ struct JointPath {
 
 struct RomPaths {
   Rolls rolls = Rolls::canonical;
+  bool neutral_from_motion = false;  // see HumanoidOptions
   PerJoint<JointPath> joints;
 };
 
@@ -46,6 +47,7 @@ struct RomFigures {
   double excess_max_deg = 0.0;
   std::optional<Joint> worst_joint;
   Rolls rolls = Rolls::canonical;
+  bool neutral_from_motion = false;
   PerJoint<std::optional<JointRomFigures>> joints;  // nothing where the segment is fused
 };
 
@@ -56,6 +58,18 @@ RomPaths rom_paths(const Skeleton& skeleton, const Humanoid& humanoid, const Ran
 
 JointRomFigures rom_figures(const JointPath& path);
 RomFigures rom_figures(const RomPaths& paths);
+
+/// A clip of a character, and how its segments were found.
+struct ClipToCheck {
+  const Character* character;
+  std::size_t animation;
+  HumanoidOptions options;
+};
+
+/// The joints' paths through a clip: with the frames that its bake stored in it, else the reading that leaves
+/// fewer samples outside. A file with only motion has two neutral poses to be read from: its rest pose, and
+/// how the person holds himself in the mean.
+RomPaths rom_paths(const ClipToCheck& clip, const Humanoid& humanoid, const RangeOfMotion& range);
 
 /// A clip's poses as they are checked, at most 60 a second.
 Clip clip_to_check(const Character& character, std::size_t clip);

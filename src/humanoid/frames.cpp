@@ -287,7 +287,7 @@ Status find_frames(const Character& character, const HumanoidOptions& options, H
   int axis = 0;
   reference.up.cwiseAbs().maxCoeff(&axis);
   humanoid.up_axis = static_cast<char>('x' + axis);
-  refine_from_motion(character, reference, humanoid);
+  if (options.neutral_from_motion) refine_from_motion(character, reference, humanoid);
   humanoid.reference = std::move(reference.pose);
   return Done{};
 }

@@ -36,7 +36,13 @@ struct HumanoidOptions {
   std::optional<double> metres_per_unit;
   std::optional<char> up_axis;  // 'y' or 'z'
   std::optional<double> height_m;
+  /// Of a file with only motion: the neutral pose is corrected by how the person moves (refine.h), because
+  /// capture suits and marker sets put trunk and hands askew. False: it is that of the rest pose.
+  bool neutral_from_motion = true;
 };
+
+/// A motion without a character: its clip is the only source of the person's posture.
+bool is_motion_only(const Character& character);
 
 struct Humanoid {
   PerSegment<SegmentNodes> segments;
@@ -83,9 +89,9 @@ BodyPose segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const P
 /// The same with the free rolls chosen like a human body, because rigs put them on whatever bone they like:
 /// (a) the forearm takes the hand's twist, (b) the trunk's side bend, flexion and turn are split 0.46, 0.54,
 /// 0.30 to the abdomen and the rest to the chest, (c) upper arm and thigh are rolled until elbow and knee
-/// bend in their hinge plane (weight 0 below 4 degrees of bend, 1 above 14; not by more than 60), (d) the
-/// shank takes 60 % of the toe-out, 18 in to 24 degrees out. Positions are unchanged; fused segments follow
-/// the segment they move with.
+/// bend in their hinge plane (weight 0 below 4 degrees of bend, 1 above 14; not by more than 90, or 120 from
+/// 30 degrees of bend on), (d) the shank takes 60 % of the toe-out, 18 in to 24 degrees out. Positions are
+/// unchanged; fused segments follow the segment they move with.
 BodyPose canonical_segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose);
 
 /// Poses the skeleton: `base`, with every segment turned and the pelvis (and detached segments) moved by what

@@ -14,9 +14,6 @@ struct Reference {
   bool is_frame = false;  // a moment of a motion, not a pose that somebody chose
 };
 
-/// A motion without a character: its clip is the only source of the person's posture.
-bool only_motion(const Character& character);
-
 /// A motion's zero pose or best frame; a character's rest pose, its bind pose where that is cleaner, else the
 /// best frame of its first animation. Turned upright where it leans against every axis of the file.
 Reference find_reference(const Character& character, const Humanoid& humanoid);

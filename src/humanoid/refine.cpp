@@ -1,5 +1,6 @@
 #include "humanoid/refine.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <optional>
 
@@ -11,6 +12,7 @@ namespace {
 constexpr int kMostFrames = 600;
 constexpr int kUprightForTrunk = 80;
 constexpr int kUprightForClavicles = 15;
+constexpr double kBrokenBend = radians(80.0);  // of a wrist from its middle: the tracker lost the hand
 
 /// Mean of rotations: the rotation nearest to the mean matrix.
 struct MeanRotation {
@@ -23,6 +25,19 @@ struct MeanRotation {
   }
   Quat mean() const { return count == 0 ? Quat::Identity() : rotation_part(sum); }
 };
+
+/// Mean of the rotations that lie near their middle.
+Quat mean_of_whole(const std::vector<Quat>& rotations) {
+  constexpr int kRounds = 3;
+  Quat middle = Quat::Identity();
+  for (int round = 0; round < kRounds; ++round) {
+    MeanRotation mean;
+    for (const Quat& q : rotations)
+      if (round == 0 || angle_between(middle, q) < kBrokenBend) mean.add(q);
+    middle = mean.mean();
+  }
+  return middle;
+}
 
 bool is_upright(const Figure& f, const Vec3& up) {
   if (angle(f[Segment::head] - f.hips(), up) > radians(20)) return false;
@@ -48,22 +63,62 @@ PerSegment<Quat> relative_rotations(const Humanoid& humanoid, const Figure& figu
 Quat turn(double angle) { return Quat(std::cos(0.5 * angle), 0.0, std::sin(0.5 * angle), 0.0); }
 Quat without_turn(const Quat& q) { return q * turn(-twist_angle(q, Vec3::UnitY())); }
 
+/// One hand over the motion, against a forearm that has taken its twist over.
+struct HandMotion {
+  std::vector<Quat> bends;
+  Vec2 pronation = Vec2::Zero();  // sum of (cos, sin) of the forearm's turn against the upper arm
+};
+
 struct Means {
   PerSegment<MeanRotation> upright;
-  PerSegment<MeanRotation> wrist;  // hands against forearms that have taken the twist over
+  std::array<HandMotion, 2> hands;  // left, right
 };
+
+void add_hand(const PerSegment<Quat>& relative, int side, HandMotion& motion) {
+  const Quat& hand = relative[index(kHand[side])];
+  const double twist = twist_angle(hand, Vec3::UnitY());
+  const double turned = twist_angle(relative[index(kForearm[side])] * turn(twist), Vec3::UnitY());
+  motion.bends.push_back(turn(-twist) * hand);
+  motion.pronation += Vec2(std::cos(turned), std::sin(turned));
+}
 
 Means measure(const std::vector<Figure>& figures, const Vec3& up, const Humanoid& humanoid) {
   Means means;
   for (const Figure& figure : figures) {
     const PerSegment<Quat> relative = relative_rotations(humanoid, figure);
-    for (const Segment hand : kHand)
-      means.wrist[index(hand)].add(turn(-twist_angle(relative[index(hand)], Vec3::UnitY())) *
-                                   relative[index(hand)]);
+    for (int side = 0; side < 2; ++side) add_hand(relative, side, means.hands[side]);
     if (!is_upright(figure, up)) continue;
     for (int s = 1; s < kSegmentCount; ++s) means.upright[s].add(relative[s]);
   }
   return means;
+}
+
+/// The turn about y that takes the axis about which the wrist bends most to that of flexion (x, palms to the
+/// thighs): the range in flexion is more than twice that in deviation. Of the two such turns the one that
+/// leaves the forearm nearer the middle of pronation, none that takes it away from there. 0 where the wrist
+/// hardly bends, or as far to every side.
+double hand_roll(const HandMotion& motion, const Quat& mean) {
+  constexpr double kLeastSpread = radians(8.0);
+  constexpr double kLeastRatio = 1.5;
+  constexpr double kMiddle = radians(25.0);
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  int count = 0;
+  for (const Quat& q : motion.bends) {
+    const Vec3 bend = log_rotation(q * mean.conjugate());
+    if (bend.norm() > kBrokenBend) continue;
+    spread += Vec2(bend.x(), bend.z()) * Vec2(bend.x(), bend.z()).transpose();
+    ++count;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spread / std::max(count, 1));
+  const double least = std::sqrt(std::max(axes.eigenvalues()[0], 0.0));
+  const double most = std::sqrt(std::max(axes.eigenvalues()[1], 0.0));
+  if (most < kLeastSpread || most < kLeastRatio * least) return 0.0;
+  const Vec2 flexion = axes.eigenvectors().col(1);
+  const double roll = std::atan(-flexion.y() / flexion.x());
+  const double pronation = std::atan2(motion.pronation.y(), motion.pronation.x());
+  const double opposite = roll - std::copysign(kPi, roll);
+  const double best = std::abs(pronation + opposite) < std::abs(pronation + roll) ? opposite : roll;
+  return std::abs(pronation + best) <= std::max(std::abs(pronation), kMiddle) ? best : 0.0;
 }
 
 /// With C the correction (new frame = old frame * C), a mean relative rotation M becomes neutral when C =
@@ -84,7 +139,14 @@ void centre(const Means& means, Humanoid& humanoid) {
   if (upright >= kUprightForClavicles)
     for (const Segment s : {Segment::clavicle_l, Segment::clavicle_r})
       apply(s, means.upright[index(s)].mean());
-  for (const Segment s : {Segment::hand_l, Segment::hand_r}) apply(s, means.wrist[index(s)].mean());
+  for (int side = 0; side < 2; ++side) {
+    const Segment hand = kHand[side];
+    if (humanoid.segments[index(hand)].fused()) continue;
+    const Quat mean = mean_of_whole(means.hands[side].bends);
+    apply(hand, mean);
+    Quat& frame = humanoid.node_from_segment[index(hand)];
+    frame = (frame * turn(hand_roll(means.hands[side], mean))).normalized();
+  }
 }
 
 /// Mean axis of a hinge in its two bones' nodes, from frames bent by more than 30 degrees.
@@ -169,7 +231,7 @@ void read_feet_where_flat(const std::vector<Figure>& figures, const Vec3& up, Hu
 }  // namespace
 
 void refine_from_motion(const Character& character, const Reference& reference, Humanoid& humanoid) {
-  if (!only_motion(character)) return;
+  if (!is_motion_only(character)) return;
   std::vector<Figure> figures;
   for (const double t : sample_times(character.animations[0], kMostFrames))
     figures.emplace_back(character, humanoid, sample(character.skeleton, character.animations[0], t));

@@ -43,13 +43,14 @@ double smoothstep(double low, double high, double x) {
 }
 
 /// (c): rolls the upper segment about its axis until the lower one bends in its x-y plane, towards +x (elbow)
-/// or -x (knee).
+/// or -x (knee). A bend to the side is a roll of the rig, one to the back is hyperextension and stays.
 void roll_into_hinge_plane(BodyPose& body, Segment upper, Segment lower, double flexion_side) {
   Quat& rotation = body[index(upper)].rotation;
   const Vec3 link = rotation.conjugate() * (body[index(lower)].rotation * -Vec3::UnitY());
   const double bend = std::atan2(std::hypot(link.x(), link.z()), -link.y());
   const double roll = std::atan2(-flexion_side * link.z(), flexion_side * link.x());
-  if (std::abs(roll) > radians(60)) return;
+  const double most = radians(90.0) + radians(30.0) * smoothstep(radians(14), radians(30), bend);
+  if (std::abs(roll) > most) return;
   rotation = rotation * about_y(smoothstep(radians(4), radians(14), bend) * roll);
 }
 

@@ -11,8 +11,8 @@
 namespace ukemi {
 namespace {
 
-constexpr double kMomentumSpan_s = 1.0;  // after the blow
-constexpr double kJitterSpan_s = 0.5;    // before the end
+constexpr double kAfterBlow_s = 1.0;   // after the blow
+constexpr double kJitterSpan_s = 0.5;  // before the end
 
 }  // namespace
 
@@ -90,16 +90,28 @@ void Recorder::step(double time_s, double h, const Contacts& contacts, double ex
   ++figures_.steps;
   figures_.joint_separation_max_m = std::max(figures_.joint_separation_max_m, separation);
   figures_.floor_penetration_max_m = std::max(figures_.floor_penetration_max_m, contacts.floor_penetration);
+  figures_.floor_penetration_end_m = contacts.floor_penetration;
   figures_.self_penetration_max_m = std::max(figures_.self_penetration_max_m, contacts.self_penetration);
   if (contacts.ground_beyond_feet && !figures_.first_ground_contact_s)
     figures_.first_ground_contact_s = time_s;
   if (!contacts.ground) airborne_ += h;
-  if (time_s <= kMomentumSpan_s + 1e-9) {
+  if (time_s <= kAfterBlow_s + 1e-9) {
     momentum_integral_ += h * angular_momentum_about_centre(model_.bodies()).norm();
     momentum_time_ += h;
   }
   turning_.push_back({time_s, h, mean_square});
   hash_state();
+}
+
+double Recorder::root_mean_square_turning(double from_s, double to_s) const {
+  double weight = 0.0;
+  double sum = 0.0;
+  for (const Turning& t : turning_) {
+    if (t.time_s < from_s || t.time_s > to_s) continue;
+    sum += t.h * t.mean_square;
+    weight += t.h;
+  }
+  return weight > 0.0 ? std::sqrt(sum / weight) : 0.0;
 }
 
 LimitFigures Recorder::limits(bool projected) const {
@@ -124,14 +136,10 @@ SimulationFigures Recorder::figures() const {
   SimulationFigures result = figures_;
   result.airborne_mean_s = airborne_;
   if (momentum_time_ > 0.0) result.angular_momentum_mean_kg_m2_s = momentum_integral_ / momentum_time_;
-  double weight = 0.0;
-  double sum = 0.0;
-  for (const Turning& t : turning_) {
-    if (t.time_s < turning_.back().time_s - kJitterSpan_s) continue;
-    sum += t.h * t.mean_square;
-    weight += t.h;
-  }
-  if (weight > 0.0) result.jitter_rad_s = std::sqrt(sum / weight);
+  if (!turning_.empty())
+    result.jitter_rad_s =
+        root_mean_square_turning(turning_.back().time_s - kJitterSpan_s, turning_.back().time_s);
+  result.turning_mean_rad_s = root_mean_square_turning(0.0, kAfterBlow_s + 1e-9);
   result.hash = fmt::format("{:016x}", hash_);
   return result;
 }

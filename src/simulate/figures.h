@@ -37,6 +37,8 @@ class Recorder {
     double time_s, h, mean_square;
   };
   void hash_state();
+  /// Of the segments' angular velocities between two times, rad/s.
+  double root_mean_square_turning(double from_s, double to_s) const;
 
   const Model& model_;
   double gravity_;

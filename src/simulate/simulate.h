@@ -93,7 +93,9 @@ struct SimulationFigures {
   std::optional<double> first_ground_contact_s;  // of anything but the feet
   double angular_momentum_mean_kg_m2_s = 0.0;    // about the centre of mass, mean over 1 s after the blow
   double airborne_mean_s = 0.0;                  // time without ground contact after the blow
-  std::string hash;                              // of every state of the run
+  double turning_mean_rad_s = 0.0;       // RMS angular velocity of the segments over 1 s after the blow
+  double floor_penetration_end_m = 0.0;  // at the last step
+  std::string hash;                      // of every state of the run
 };
 
 struct SimulationResult {
