@@ -79,7 +79,7 @@ RomPaths rom_paths(const ClipToCheck& clip, const Humanoid& humanoid, const Rang
   const std::vector<Pose> poses = clip_to_check(character, clip.animation).frames;
   const auto stored = frames_in_extras(character.skeleton, character.animations[clip.animation].extras_json);
   RomPaths paths = rom_paths(character.skeleton, humanoid, range, poses, stored);
-  if (stored || !is_motion_only(character) || !clip.options.neutral_from_motion) return paths;
+  if (stored || !only_motion(character) || !clip.options.neutral_from_motion) return paths;
   paths.neutral_from_motion = true;
   HumanoidOptions options = clip.options;
   options.neutral_from_motion = false;

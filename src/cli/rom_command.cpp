@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
 #include <string>
 
 #include "bake/outputs.h"
@@ -33,7 +35,25 @@ Status take_state(RomSettings& settings, const std::string& text) {
   return Done{};
 }
 
-void declare(Options& options, RomSettings& settings) {
+constexpr Range kExcessRange{0.0, 180.0};
+
+/// The command line of `ukemi rom`.
+struct RomRequest {
+  RomSettings settings;
+  std::optional<double> max_excess_deg;
+  std::filesystem::path output;
+  bool json = false;
+};
+
+Status take_max_excess(RomRequest& request, const std::string& text) {
+  const auto degrees = parse_number("--max-excess", text, kExcessRange);
+  if (!degrees) return degrees.error();
+  request.max_excess_deg = *degrees;
+  return Done{};
+}
+
+void declare(Options& options, RomRequest& request) {
+  RomSettings& settings = request.settings;
   options.text("--joint", "NAME", settings.joint,
                "spine chest neck clavicle_r shoulder_r elbow_r wrist_r hip_r knee_r ankle_r or _l [default: "
                "all]");
@@ -47,41 +67,60 @@ void declare(Options& options, RomSettings& settings) {
       "a point of the joint, degrees, with the chords of the polygon through it");
   options.flag("--swing", settings.swing,
                "pulls a single link on the joint into its boundary, under axis, segments and edges");
+  options.custom(
+      "--max-excess", "DEG", [&request](const std::string& text) { return take_max_excess(request, text); },
+      "with --check: exit status 1 when a joint lies farther outside than this");
   declare_humanoid_options(options, settings.humanoid);
+  options.path("-o,--output", request.output, "the picture, as .png");
+  options.flag("--json", request.json, "as JSON to stdout");
 }
 
-Status check_output(const std::filesystem::path& output) {
-  if (const Status status = check_picture_name(output); !status) return status.error();
-  return check_writable(output);
+Status check(const RomRequest& request) {
+  if (request.max_excess_deg && !request.settings.check)
+    return Error{
+        ErrorKind::usage, "", 0, 0, "", "--max-excess needs --check", "name a clip or a file to check"};
+  if (request.output.empty()) return Done{};
+  if (const Status status = check_picture_name(request.output); !status) return status.error();
+  return check_writable(request.output);
+}
+
+/// Of the joints that were asked for.
+double largest_excess_deg(const Rom& rom) {
+  double largest = 0.0;
+  for (const Joint joint : rom.joints)
+    if (const auto& figures = rom.check->figures.joints[index(joint)])
+      largest = std::max(largest, figures->excess_max_deg);
+  return largest;
 }
 
 }  // namespace
 
 int rom_command(const Arguments& arguments) {
-  RomSettings settings;
-  std::filesystem::path output;
-  bool json = false;
+  RomRequest request;
   Options options("rom", "draws or prints the range of motion of the joints, and clips in it");
-  declare(options, settings);
-  options.path("-o,--output", output, "the picture, as .png");
-  options.flag("--json", json, "as JSON to stdout");
+  declare(options, request);
   const auto outcome = options.parse(arguments);
   if (!outcome) return print_error(outcome.error());
   if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
-  if (!output.empty())
-    if (const Status status = check_output(output); !status) return print_error(status.error());
+  if (const Status status = check(request); !status) return print_error(status.error());
 
   Diagnostics diagnostics;
-  const auto rom = rom_of(settings, diagnostics);
+  const auto rom = rom_of(request.settings, diagnostics);
   print_warnings(diagnostics);
   if (!rom) return print_error(rom.error());
-  if (!output.empty()) {
+  if (!request.output.empty()) {
     const auto png = rom_png(*rom);
     if (!png) return print_error(png.error());
-    if (const Status status = write_file(output, *png); !status) return print_error(status.error());
+    if (const Status status = write_file(request.output, *png); !status) return print_error(status.error());
   }
-  if (json) return print_result(rom_json(*rom), 0);
-  return print_result(rom_text(*rom) + (output.empty() ? "" : fmt::format("wrote {}\n", output.string())), 0);
+  const bool too_far = request.max_excess_deg && largest_excess_deg(*rom) > *request.max_excess_deg;
+  if (request.json) return print_result(rom_json(*rom), too_far ? 1 : 0);
+  std::string text = rom_text(*rom);
+  if (too_far)
+    text += fmt::format("{:.2f} degrees outside, more than --max-excess {:g}\n", largest_excess_deg(*rom),
+                        *request.max_excess_deg);
+  if (!request.output.empty()) text += fmt::format("wrote {}\n", request.output.string());
+  return print_result(text, too_far ? 1 : 0);
 }
 
 }  // namespace ukemi

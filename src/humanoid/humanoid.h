@@ -42,7 +42,7 @@ struct HumanoidOptions {
 };
 
 /// A motion without a character: its clip is the only source of the person's posture.
-bool is_motion_only(const Character& character);
+bool only_motion(const Character& character);
 
 struct Humanoid {
   PerSegment<SegmentNodes> segments;

@@ -137,12 +137,12 @@ Reference reference_of_motion(const Character& character, const Humanoid& humano
 
 }  // namespace
 
-bool is_motion_only(const Character& character) {
+bool only_motion(const Character& character) {
   return character.parts.empty() && !character.animations.empty() && !character.animations[0].tracks.empty();
 }
 
 Reference find_reference(const Character& character, const Humanoid& humanoid) {
-  if (is_motion_only(character)) return reference_of_motion(character, humanoid);
+  if (only_motion(character)) return reference_of_motion(character, humanoid);
   const Pose rest = rest_pose(character.skeleton);
   const Figure figure(character, humanoid, rest);
   const Vec3 up = dominant_axis(figure.rise());

@@ -231,7 +231,7 @@ void read_feet_where_flat(const std::vector<Figure>& figures, const Vec3& up, Hu
 }  // namespace
 
 void refine_from_motion(const Character& character, const Reference& reference, Humanoid& humanoid) {
-  if (!is_motion_only(character)) return;
+  if (!only_motion(character)) return;
   std::vector<Figure> figures;
   for (const double t : sample_times(character.animations[0], kMostFrames))
     figures.emplace_back(character, humanoid, sample(character.skeleton, character.animations[0], t));

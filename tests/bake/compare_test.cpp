@@ -1,8 +1,13 @@
 #include "bake/compare.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
 
 #include "bake/compare_pictures.h"
 #include "load/load.h"
@@ -76,6 +81,71 @@ TEST(RandomHits, OfMoreHitsBeginWithTheSameOnesAndReachEverySegment) {
   PerSegment<int> count{};
   for (const RandomHit& hit : many) ++count[index(hit.segment)];
   for (const int n : count) EXPECT_GT(n, 0);
+}
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr int kHitsOnTheMannequin = 4;  // each takes seconds there
+#else
+constexpr int kHitsOnTheMannequin = 200;
+#endif
+
+void expect_human(const Trial& trial) {
+  ASSERT_FALSE(trial.failure);
+  const LimitFigures& limits = trial.result.limits;
+  const SimulationFigures& figures = trial.result.figures;
+  EXPECT_GT(limits.samples, 50 * kJointCount);
+  EXPECT_EQ(limits.over_1deg, 0);
+  EXPECT_LT(limits.excess_max_deg, 1.0);
+  EXPECT_LT(limits.excess_projected_max_deg, 0.001);
+  EXPECT_LT(figures.joint_separation_max_m, 0.010);
+  EXPECT_LT(figures.energy_gain_max_j, 6.0);
+  for (const BodyPose& frame : trial.result.trajectory.frames)
+    for (const Rigid& segment : frame)
+      ASSERT_TRUE(segment.translation.allFinite() && segment.rotation.coeffs().allFinite());
+}
+
+TEST(RandomHits, KeepTheMannequinHumanWithDefaultSettings) {
+  Diagnostics diagnostics;
+  const auto prepared = prepare_bake(mannequin(), BakeSettings{}, diagnostics);
+  ASSERT_TRUE(prepared) << prepared.error().message();
+  const std::vector<RandomHit> hits = random_hits(7, kHitsOnTheMannequin);
+  const Quat& pelvis = prepared->start.segments[index(Segment::pelvis)].rotation;
+  std::vector<std::optional<Trial>> trials(hits.size());
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < hits.size(); i = next++) {
+      Diagnostics unsaid;
+      auto trial = simulate_trial(prepared->body, prepared->range, prepared->range, prepared->start.state,
+                                  scene_of(hits[i], pelvis), SimulationSettings{}, unsaid);
+      if (trial) trials[i] = std::move(*trial);
+    }
+  };
+  std::thread other(work);
+  work();
+  other.join();
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    SCOPED_TRACE(fmt::format("hit {}: {}", i, describe(hits[i])));
+    ASSERT_TRUE(trials[i]);
+    expect_human(*trials[i]);
+  }
+}
+
+TEST(Compare, ChangesAreThoseOfTheSameHitsWithTheirInterval) {
+  MethodFigures b, c;
+  b.airborne_by_hit_s = {0.2, 0.1, 0.0, 9.0};
+  c.airborne_by_hit_s = {0.1, 0.1, 0.1, 0.0};
+  b.exploded_hits = {false, false, false, true};
+  c.exploded_hits = {false, false, false, false};
+  const PairedChange change = paired_change(c, b, &MethodFigures::airborne_by_hit_s);
+  EXPECT_NEAR(change.fraction, 0.0, 1e-12);
+  EXPECT_EQ(change.less, 1);
+  EXPECT_EQ(change.more, 1);
+  // Differences -0.1, 0, 0.1: standard deviation 0.1, standard error 0.1 / sqrt(3), mean of b 0.1.
+  EXPECT_NEAR(change.high, 1.96 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(change.low, -change.high, 1e-12);
+  const PairedChange none = paired_change(b, b, &MethodFigures::airborne_by_hit_s);
+  EXPECT_EQ(none.fraction, 0.0);
+  EXPECT_EQ(none.high, 0.0);
 }
 
 TEST(Compare, RunsTheMethodsOfThePaperAndOurs) {

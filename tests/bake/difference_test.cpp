@@ -158,6 +158,11 @@ TEST(NativeRate, IsTheFilesOrThatOfTheClosestKeys) {
   animation.tracks.push_back(track);
   animation.tracks.push_back({0, TrackPath::scale, Interpolation::linear, {0.0, 1.0}, {}});
   EXPECT_EQ(native_rate(animation), 24.0);
+  Track even;
+  for (int i = 0; i <= 1000; ++i) even.times.push_back(i / 24.0);
+  even.times.insert(even.times.begin() + 1, 0.0001);  // a key between two frames
+  animation.tracks.push_back(even);
+  EXPECT_EQ(native_rate(animation), 24.0);
   animation.fps = 120.0;
   EXPECT_EQ(native_rate(animation), 120.0);
 }

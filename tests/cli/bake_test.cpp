@@ -197,6 +197,9 @@ TEST_F(Bake, IsReadBackByTheOtherCommands) {
   EXPECT_EQ(rom["over_1deg_fraction"], 0.0) << rom;
   EXPECT_LT(rom["excess_max_deg"], 0.5) << rom;
   EXPECT_EQ(rom["rolls"], "stored");
+  const Json motion = Json::parse(succeed({"inspect", "a.bvh", "--json"}))["clips"].back()["rom"];
+  EXPECT_EQ(motion["over_1deg_fraction"], 0.0) << motion;
+  EXPECT_EQ(motion["neutral"], "rest");
   EXPECT_EQ(rom["joints"].size(), 17u);
   EXPECT_EQ(rom["joints"]["knee_l"]["over_1deg_fraction"], 0.0) << rom;
   succeed({"render", "a.glb", "-o", "a.png"});

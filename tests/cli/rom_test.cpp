@@ -45,6 +45,17 @@ TEST_F(Rom, FollowsAClipThroughTheRanges) {
   EXPECT_EQ(json({"--check", "mannequin", "--clip", "walk", "--joint", "knee_l"})["joints"].size(), 1u);
 }
 
+TEST_F(Rom, SaysNoToAClipThatLeavesTheRangeTooFar) {
+  EXPECT_EQ(run({"rom", "--check", "walk", "--max-excess", "1"}).status, 0);
+  const Ran ran =
+      run({"rom", "--check", "walk", "--region", "diamond", "--max-excess", "1", "-o", "walk.png"});
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_NE(ran.out.find("outside, more than --max-excess 1"), std::string::npos) << ran.out;
+  EXPECT_EQ(picture("walk.png"), "PNG");
+  EXPECT_EQ(run({"rom", "--check", "walk", "--region", "diamond"}).status, 0) << "nothing was asked";
+  expect_refused({"rom", "--max-excess", "1"}, 2, "--max-excess needs --check");
+}
+
 TEST_F(Rom, TellsTheStopsThroughAState) {
   const Json rom = json({"--region", "diamond", "--joint", "neck", "--state=10,20", "-o", "state.png"});
   const Json& state = rom["joints"]["neck"]["state"];

@@ -80,6 +80,17 @@ TEST(CanonicalRolls, ElbowAndKneeBendInThePlaneOfTheirHinges) {
   EXPECT_NEAR(shank.x(), -std::sin(radians(60)), 1e-9);
 }
 
+TEST(CanonicalRolls, ABendToTheSideIsARollOfTheRig) {
+  const Puppet puppet;
+  // Bent by 50 degrees about an axis that is 100 degrees off the hinge: no elbow does that.
+  const Quat off = about(Vec3::UnitY(), 100);
+  const Quat bend = off * about(Vec3::UnitZ(), 50) * off.conjugate();
+  const BodyPose body = puppet.canonical({{Segment::forearm_r, bend}, {Segment::hand_r, bend}});
+  const Vec3 forearm = relative(body, Segment::upperarm_r, Segment::forearm_r) * -Vec3::UnitY();
+  EXPECT_NEAR(forearm.x(), std::sin(radians(50)), 1e-9);
+  EXPECT_NEAR(forearm.z(), 0.0, 1e-9);
+}
+
 TEST(CanonicalRolls, AStraightArmAndAHingeFarOffKeepTheirRolls) {
   const Puppet puppet;
   const Quat roll = about(Vec3::UnitY(), 30);

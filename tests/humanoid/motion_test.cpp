@@ -130,6 +130,76 @@ TEST(Motion, HandsThatTheMarkersPutAskewBecomeStraightOnAverage) {
   EXPECT_LT((sum / 100.0).norm(), radians(0.5));
 }
 
+/// Frames in which the right wrist swings by 30 degrees about an axis of the hand; in every fourth frame the
+/// hand is folded back, as where a tracker loses it.
+std::vector<Pose> frames_with_a_waving_hand(const Character& character, const Vec3& axis, bool lost) {
+  const Humanoid humanoid = mapped(character);
+  const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
+  std::vector<Pose> frames;
+  for (int i = 0; i < 100; ++i) {
+    BodyPose to = from;
+    const double bend = lost && i % 4 == 3 ? 140.0 : 30.0 * std::sin(2.0 * kPi * i / 100.0);
+    to[index(Segment::hand_r)].rotation =
+        to[index(Segment::forearm_r)].rotation * exp_rotation(radians(bend) * axis);
+    frames.push_back(pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, to));
+  }
+  return frames;
+}
+
+/// Largest flexion (about x) and deviation (about z) of the right wrist over the frames, degrees.
+Vec2 wrist_bends_deg(const Character& character, const std::vector<Pose>& frames) {
+  const Humanoid humanoid = mapped(character);
+  Vec2 largest = Vec2::Zero();
+  for (const Pose& pose : frames) {
+    const BodyPose body = canonical_segments_of(character.skeleton, humanoid, pose);
+    const Vec3 bend = log_rotation(body[index(Segment::forearm_r)].rotation.conjugate() *
+                                   body[index(Segment::hand_r)].rotation);
+    largest = largest.cwiseMax(Vec2(degrees(std::abs(bend.x())), degrees(std::abs(bend.z()))));
+  }
+  return largest;
+}
+
+TEST(Motion, TheAxisAWristBendsAboutMostIsThatOfFlexion) {
+  Character character = figure({.arm_elevation_deg = 5.0});
+  const Vec3 oblique = Vec3(std::cos(radians(20)), 0.0, std::sin(radians(20)));
+  const std::vector<Pose> frames = frames_with_a_waving_hand(character, oblique, false);
+  EXPECT_NEAR(wrist_bends_deg(character, frames).y(), 30.0 * std::sin(radians(20)), 0.5) << "at first";
+  set_motion(character, frames);
+  EXPECT_NEAR(wrist_bends_deg(character, frames).x(), 30.0, 0.5);
+  EXPECT_LT(wrist_bends_deg(character, frames).y(), 0.5);
+}
+
+TEST(Motion, NoHandIsRolledThatTurnsItsForearmToTheEndOfPronation) {
+  Character character = figure({.arm_elevation_deg = 5.0});
+  const std::vector<Pose> frames = frames_with_a_waving_hand(character, Vec3::UnitZ(), false);
+  set_motion(character, frames);
+  EXPECT_NEAR(wrist_bends_deg(character, frames).y(), 30.0, 0.5);
+}
+
+TEST(Motion, FramesInWhichTheTrackerLosesAHandDoNotMoveIt) {
+  Character character = figure({.arm_elevation_deg = 5.0});
+  set_motion(character, frames_with_a_waving_hand(character, Vec3::UnitX(), true));
+  const Humanoid humanoid = mapped(character);
+  const BodyPose body = segments_of(character.skeleton, humanoid, rest_pose(character.skeleton));
+  EXPECT_LT(angle_between(body[index(Segment::forearm_r)].rotation, body[index(Segment::hand_r)].rotation),
+            radians(1.0));
+}
+
+TEST(Motion, TheNeutralPoseMayBeKeptThatOfTheRestPose) {
+  Character character = figure({.arm_elevation_deg = 5.0});
+  const Humanoid before = mapped(character);
+  set_motion(character, frames_with_a_bent_hand(character, 100));
+  HumanoidOptions options;
+  options.neutral_from_motion = false;
+  Diagnostics diagnostics;
+  const auto kept = map_humanoid(character, options, diagnostics);
+  ASSERT_TRUE(kept);
+  const int hand = index(Segment::hand_r);
+  EXPECT_LT(angle_between(kept->node_from_segment[hand], before.node_from_segment[hand]), 1e-9);
+  EXPECT_GT(angle_between(mapped(character).node_from_segment[hand], before.node_from_segment[hand]),
+            radians(20.0));
+}
+
 TEST(Motion, ACharacterWithAMeshKeepsItsOwnNeutralPose) {
   Character character = figure({.arm_elevation_deg = 5.0});
   set_motion(character, frames_with_a_bent_hand(character, 100));

@@ -337,6 +337,21 @@ TEST(Simulate, ABoxSlidesIn) {
   EXPECT_EQ(result.limits.over_1deg, 0);
 }
 
+TEST(Simulate, AFallenBodyHardlyMovesOnWhereNothingHoldsIt) {
+  const StandingMan man;
+  SimulationSettings settings;
+  settings.duration_s = 6.0;
+  settings.stop_at_rest = false;
+  for (const Vec3& direction : {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)}) {
+    Scene scene;
+    scene.direction = direction;
+    const SimulationFigures figures = run(man, scene, settings).figures;
+    EXPECT_LT(figures.jitter_rad_s, 0.02);
+    EXPECT_GT(figures.jitter_rad_s, 0.0) << "held after all";
+    EXPECT_LT(figures.floor_penetration_end_m, 0.003);
+  }
+}
+
 TEST(Simulate, AFallenBodyComesToRestAndIsHeld) {
   const StandingMan man;
   Scene scene;
