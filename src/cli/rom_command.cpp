@@ -46,7 +46,7 @@ struct RomRequest {
 };
 
 Status take_max_excess(RomRequest& request, const std::string& text) {
-  const auto degrees = parse_number("--max-excess", text, kExcessRange);
+  const auto degrees = parse_number(text, kExcessRange);
   if (!degrees) return degrees.error();
   request.max_excess_deg = *degrees;
   return Done{};

@@ -115,21 +115,24 @@ Vec3 choose_up(const Character& character, const HumanoidOptions& options, const
 // --- frames
 // --------------------------------------------------------------------------------------------------
 
-/// Frame with the given y axis and the z axis nearest to `z`; columns x y z.
+/// The part of `hint` that is perpendicular to the unit vector `y`, as a unit vector; any where there is
+/// none.
+Vec3 perpendicular(const Vec3& y, const Vec3& hint) {
+  const Vec3 part = hint - hint.dot(y) * y;
+  return part.norm() < 1e-6 * hint.norm() ? y.unitOrthogonal() : part.normalized();
+}
+
+/// Frame with the given y axis and the z axis nearest to `z_hint`; columns x y z.
 Mat3 frame_yz(const Vec3& y_hint, const Vec3& z_hint) {
-  const Vec3 y = y_hint.normalized();
-  Vec3 z = z_hint - z_hint.dot(y) * y;
-  if (z.norm() < 1e-6 * z_hint.norm()) z = y.unitOrthogonal();
-  z.normalize();
+  const Vec3 y = y_hint.normalized(), z = perpendicular(y, z_hint);
   Mat3 m;
   m << y.cross(z), y, z;
   return m;
 }
+
+/// Frame with the given y axis and the x axis nearest to `x_hint`.
 Mat3 frame_yx(const Vec3& y_hint, const Vec3& x_hint) {
-  const Vec3 y = y_hint.normalized();
-  Vec3 x = x_hint - x_hint.dot(y) * y;
-  if (x.norm() < 1e-6 * x_hint.norm()) x = y.unitOrthogonal();
-  x.normalize();
+  const Vec3 y = y_hint.normalized(), x = perpendicular(y, x_hint);
   Mat3 m;
   m << x, y, x.cross(y);
   return m;

@@ -20,7 +20,7 @@ class Recorder {
 
   void excess_of_step(const std::vector<double>& excess_by_joint, double projected_max);
   /// After an accepted step of length h that ended at `time_s`. `extra_energy`: of the props, J; `work`: done
-  /// on the body by the scene in this step, J.
+  /// on the body by the scene and its muscles in this step, J.
   void step(double time_s, double h, const Contacts& contacts, double extra_energy, double work,
             double separation);
   void rejected() { ++figures_.rejected_steps; }

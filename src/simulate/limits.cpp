@@ -266,6 +266,7 @@ void Tone::capture() {
 // ODE's solver many times as much as one without.
 void Tone::prepare(double h, double share) {
   if (motor_ == nullptr) return;
+  rows_.clear();
   dJointSetAMotorNumAxes(motor_, share > 0.0 ? 3 : 0);
   if (share <= 0.0) return;
   const Mat3 axes = world_from_joint(model_, joint_).toRotationMatrix();
@@ -280,11 +281,24 @@ void Tone::prepare(double h, double share) {
     const auto row = static_cast<std::size_t>(i);
     const double target = -stiffness * error.dot(axis) * cfm;
     set_axis(motor_, row, axis);
+    const double speed = omega.dot(axis);
+    const double row_cfm = std::max(cfm, std::abs(target - speed) / cap);
     dJointSetAMotorParam(motor_, suffixed(dParamVel, row), target);
     dJointSetAMotorParam(motor_, suffixed(dParamFMax, row), dInfinity);
-    dJointSetAMotorParam(motor_, suffixed(dParamCFM, row),
-                         std::max(cfm, std::abs(target - omega.dot(axis)) / cap));
+    dJointSetAMotorParam(motor_, suffixed(dParamCFM, row), row_cfm);
+    rows_.push_back({axis, target, row_cfm, speed});
   }
+}
+
+double Tone::work(double h) const {
+  if (rows_.empty()) return 0.0;
+  const Vec3 omega = relative_omega(model_, joint_);
+  double sum = 0.0;
+  for (const Row& row : rows_) {
+    const double speed = omega.dot(row.axis);
+    sum += (row.target - speed) / row.cfm * 0.5 * (row.speed + speed) * h;
+  }
+  return sum;
 }
 
 void apply_damping(const Model& model, const ModelJoint& joint, double k) {

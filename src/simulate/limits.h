@@ -73,6 +73,9 @@ class Tone {
 
   /// `share` of the joint's torque, 0 to 1.
   void prepare(double h, double share);
+  /// What the muscles did in the step of length h that has just been taken, J; less than 0 where they gave
+  /// way.
+  double work(double h) const;
   /// From now on the present pose is held.
   void capture();
 
@@ -82,6 +85,12 @@ class Tone {
   double torque_;
   Quat parent_from_child_;  // to be held
   dJointID motor_ = nullptr;
+  struct Row {
+    Vec3 axis;
+    double target, cfm;  // torque = (target - speed after the step) / cfm
+    double speed;        // before the step, rad/s
+  };
+  std::vector<Row> rows_;
 };
 
 /// Joint damping: -k I omega on the child, the opposite on the parent; I of the lighter of the two.

@@ -332,7 +332,8 @@ void Simulation::advance(int ticks) {
 void Simulation::accept(int ticks, const std::vector<double>& excesses, double projected, double separation,
                         Contacts next) {
   const double h = stepping_.tick_s * ticks;
-  const double work = stage_.work(time_s(), h);
+  double work = stage_.work(time_s(), h);
+  for (const Tone& tone : tone_) work += tone.work(h);
   ticks_ += ticks;
   contacts_ = std::move(next);
   recorder_.excess_of_step(excesses, projected);

@@ -20,7 +20,7 @@ TEST_F(Calibrate, WritesThresholdsThatABakeUses) {
   std::string broken = written;
   broken.replace(broken.find("knee = ["), 8, "knie = [");
   write("active.toml", broken);
-  expect_refused(bake, 2, "knie");
+  expect_refused(bake, 2, "joint 'knee': has no threshold");
 }
 
 TEST_F(Calibrate, MeasuresTheFilesItIsGiven) {

@@ -6,6 +6,7 @@
 
 #include "simulate/collision.h"
 #include "simulate/figures.h"
+#include "simulate/hand_on_wrist.h"
 #include "simulate/limits.h"
 #include "simulate/standing_man.h"
 
@@ -66,45 +67,28 @@ TEST(ClosedForm, ASphereRollsDownARampAsFiveSeventhsOfGravity) {
   EXPECT_NEAR(*settled, a * kStep * 120, 0.01 * a * kStep * 120);
 }
 
-/// A hand on a wrist whose other side does not move.
-class HandOnWrist {
+/// The passive restriction of a hand that turns into its limits.
+class LimitedHand {
  public:
-  HandOnWrist() {
-    StandingMan man;
-    for (BodyJoint& joint : man.body.joints) joint.fused = true;
-    man.body.joints[index(Joint::wrist_r)].fused = false;
-    for (int s = 0; s < kSegmentCount; ++s) {
-      if (segment_at(s) == Segment::hand_r) continue;
-      man.body.segments[s].mass_kg *= 1e9;
-      man.body.segments[s].inertia *= 1e9;
-    }
-    dWorldSetCFM(world_.id(), 1e-9);
-    model_.emplace(world_, man.body, man.range);
-    PerSegment<Vec3> none;
-    none.fill(Vec3::Zero());
-    PerSegment<Vec3> spin = none;
-    spin[index(Segment::hand_r)] = Vec3(4.0, 3.0, 12.0);
-    model_->place(man.segments, none, spin);
-    limit_.emplace(world_, *model_, model_->joints()[0], Limits::edges);
-  }
   double energy() const {
-    const ModelBody& hand = model_->bodies()[model_->body_of(Segment::hand_r)];
-    return kinetic_energy(hand.mass_kg, hand.inertia, read_state(hand.id));
+    return kinetic_energy(on_wrist_.hand().mass_kg, on_wrist_.hand().inertia,
+                          read_state(on_wrist_.hand().id));
   }
-  double excess_now() const { return excess(model_->joints()[0].range, model_->chart(model_->joints()[0])); }
+  double excess_now() const {
+    return excess(on_wrist_.wrist().range, on_wrist_.model().chart(on_wrist_.wrist()));
+  }
   void step(double h) {
-    limit_->prepare(h, Reach{0.25, 0.0}, false);
-    dWorldStep(world_.id(), h);
+    limit_.prepare(h, Reach{0.25, 0.0}, false);
+    dWorldStep(on_wrist_.world().id(), h);
   }
 
  private:
-  OdeWorld world_;
-  std::optional<Model> model_;
-  std::optional<PassiveLimit> limit_;
+  test::HandOnWrist on_wrist_{Vec3(4.0, 3.0, 12.0)};
+  PassiveLimit limit_{on_wrist_.world(), on_wrist_.model(), on_wrist_.wrist(), Limits::edges};
 };
 
 TEST(LookAhead, RowsOfAJointInsideItsRangeNeverAddEnergy) {
-  HandOnWrist wrist;
+  LimitedHand wrist;
   double before = wrist.energy();
   const double start = before;
   int stopped = 0;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <random>
 
+#include "simulate/hand_on_wrist.h"
 #include "simulate/limits.h"
 #include "simulate/standing_man.h"
 
@@ -52,41 +53,28 @@ void raise(StandingMan& man, double height) {
   for (Rigid& segment : man.segments) segment.translation.y() += height;
 }
 
-/// A hand that spins about its centre on a wrist whose other side does not move: everything else is one body
-/// of 1e9 kg.
+/// The active restriction of a hand that spins about its centre.
 class SpinningHand {
  public:
-  SpinningHand(Active kind, double k, double threshold) {
-    StandingMan man;
-    for (BodyJoint& joint : man.body.joints) joint.fused = true;
-    man.body.joints[index(Joint::wrist_r)].fused = false;
-    for (BodySegment& segment : man.body.segments) {
-      segment.mass_kg *= 1e9;
-      segment.inertia *= 1e9;
-    }
-    BodySegment& hand = man.body.segments[index(Segment::hand_r)];
-    hand.mass_kg = 0.4;
-    hand.inertia = Vec3(5e-4, 3e-4, 8e-4).asDiagonal();
-    hand.centre_of_mass.setZero();
-    dWorldSetCFM(world_.id(), 1e-9);
-    model_.emplace(world_, man.body, man.range);
-    PerSegment<Vec3> none;
-    none.fill(Vec3::Zero());
-    PerSegment<Vec3> spin = none;
-    spin[index(Segment::hand_r)] = Vec3(0.0, 0.0, 9.0);
-    model_->place(man.segments, none, spin);
-    active_.emplace(world_, *model_, model_->joints()[0], kind, k, Vec3::Constant(threshold));
+  SpinningHand(Active kind, double k, double threshold)
+      : on_wrist_(Vec3(0.0, 0.0, 9.0), balanced),
+        active_(on_wrist_.world(), on_wrist_.model(), on_wrist_.wrist(), kind, k, Vec3::Constant(threshold)) {
   }
   double step(double h) {
-    active_->prepare(true);
-    dWorldStep(world_.id(), h);
-    return vec3(dBodyGetAngularVel(model_->bodies()[model_->body_of(Segment::hand_r)].id)).z();
+    active_.prepare(true);
+    dWorldStep(on_wrist_.world().id(), h);
+    return vec3(dBodyGetAngularVel(on_wrist_.hand().id)).z();
   }
 
  private:
-  OdeWorld world_;
-  std::optional<Model> model_;
-  std::optional<ActiveLimit> active_;
+  static void balanced(BodySegment& hand) {
+    hand.mass_kg = 0.4;
+    hand.inertia = Vec3(5e-4, 3e-4, 8e-4).asDiagonal();
+    hand.centre_of_mass.setZero();
+  }
+
+  test::HandOnWrist on_wrist_;
+  ActiveLimit active_;
 };
 
 TEST(ActiveLimit, ImplicitDecaysAsTheClosedFormUntilTheThreshold) {
