@@ -30,7 +30,8 @@ auto take_whole(Target& target, const Range& range) {
     const auto number = parse_number(text, range);
     if (!number) return number.error();
     if (*number != static_cast<int>(*number))
-      return usage(fmt::format("'{}' is not a whole number", text), "");
+      return usage(fmt::format("'{}' is not a whole number", text),
+                   fmt::format("give a whole number, {}", range.text()));
     target = static_cast<int>(*number);
     return Done{};
   };

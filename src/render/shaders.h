@@ -147,9 +147,9 @@ float grid(float step_m, float width_px) {
 float metre_mark() {
   vec2 away = abs(fract(place - 0.5) - 0.5);
   vec2 pixel = fwidth(place);
-  vec2 thin = clamp(1.1 + 0.5 - away / pixel, 0.0, 1.0);
+  vec2 thin = clamp(0.7 + 0.5 - away / pixel, 0.0, 1.0);
   vec2 near = 1.0 - smoothstep(0.05, 0.06, away);
-  return max(thin.x * near.y, thin.y * near.x) * (1.0 - smoothstep(0.02, 0.08, max(pixel.x, pixel.y)));
+  return max(thin.x * near.y, thin.y * near.x) * (1.0 - smoothstep(0.008, 0.018, max(pixel.x, pixel.y)));
 }
 
 void main() {
