@@ -1,119 +1,38 @@
-// Key reduction: the longest pieces that stay within a joint's own tolerance, then a check of the whole
-// reduced clip by forward kinematics, which puts keys back where the error of a node's world position is too
-// large.
+// Key reduction: every curve gets keys within a tolerance of its own; then forward kinematics at every frame
+// makes curves exact where a node is too far off, and takes keys away as long as none is.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include "export/export.h"
+#include "export/key_curve.h"
 
 namespace ukemi {
 namespace {
 
-using Value = Eigen::Vector4d;  // x y z w of a rotation; x y z 0 of a translation or scale
-
 // A quantity that moves no node by more than this is still.
 constexpr double kStillM = 1e-7;
-// Share of the tolerance that one joint may use up alone before the check. Errors of a chain's joints rarely
-// point the same way. Of 0.3 to 3, tried on falls and walks, this leaves the fewest keys after the check.
-constexpr double kShare = 1.0;
 // A node without children stands for skin that reaches as far as its bone is long, at most this.
 constexpr double kTipMaxM = 0.2;
 constexpr double kTipMinM = 0.01;
+// Share of the bound that one curve may use up alone. Errors of a chain's joints rarely point the same way.
+// Of 0.3 to 1, tried on falls and flinches, all leave as many keys within 2 %.
+constexpr double kShare = 0.5;
+constexpr int kRemovalPasses = 3;
 
-struct Curve {
-  int node = -1;
-  TrackPath path = TrackPath::rotation;
-  double reach_m = 0.0;        // distance that one unit (radian, file unit, 1) moves the farthest node
-  std::vector<Value> wanted;   // one per frame
-  std::vector<Value> reduced;  // one per frame: the keys interpolated
-  std::vector<int> keys;       // frames, ascending
-};
-
-Value value_of(const LocalTransform& local, TrackPath path) {
+KeyValue value_of(const LocalTransform& local, TrackPath path) {
   if (path == TrackPath::rotation) return local.rotation.normalized().coeffs();
   const Vec3& v = path == TrackPath::translation ? local.translation : local.scale;
   return {v.x(), v.y(), v.z(), 0.0};
 }
 
-void set_value(LocalTransform& local, TrackPath path, const Value& value) {
+void set_value(LocalTransform& local, TrackPath path, const KeyValue& value) {
   if (path == TrackPath::rotation)
     local.rotation = Quat(value).normalized();
   else
     (path == TrackPath::translation ? local.translation : local.scale) = value.head<3>();
-}
-
-/// Radians, file units or 1. The chord of two unit quaternions is half the angle to third order.
-double distance(TrackPath path, const Value& a, const Value& b) {
-  return (path == TrackPath::rotation ? 2.0 : 1.0) * (a - b).norm();
-}
-
-/// Values at equal steps from a to b, exclusive of both: x(k+1) = c x(k) - x(k-1) holds for a line with c = 2
-/// and for a great arc of unit quaternions with c = 2 cos(step).
-template <typename Visit>
-bool each_between(TrackPath path, const Value& a, const Value& b, int steps, Visit visit) {
-  double c = 2.0;
-  Value previous = a;
-  Value current = a + (b - a) / steps;
-  if (path == TrackPath::rotation) {
-    const double half = std::atan2((a - b).norm(), (a + b).norm());  // of the arc
-    if (half > kPi / 4) return false;  // a viewer would take the other way round
-    const double arc = 2.0 * half;
-    c = 2.0 * std::cos(arc / steps);
-    if (arc > 1e-8) current = (std::sin(arc - arc / steps) * a + std::sin(arc / steps) * b) / std::sin(arc);
-  }
-  for (int k = 1; k < steps; ++k) {
-    if (!visit(k, current)) return false;
-    const Value next = c * current - previous;
-    previous = current;
-    current = next;
-  }
-  return true;
-}
-
-bool fits(const Curve& curve, int from, int to, double tolerance) {
-  return each_between(
-      curve.path, curve.wanted[from], curve.wanted[to], to - from,
-      [&](int k, const Value& v) { return distance(curve.path, v, curve.wanted[from + k]) <= tolerance; });
-}
-
-/// Last frame that a piece from `from` may reach: doubled until it fails, then bisected.
-int longest_piece(const Curve& curve, int from, double tolerance) {
-  const int last = static_cast<int>(curve.wanted.size()) - 1;
-  int good = from + 1;
-  int bad = last + 1;
-  for (int length = 2; good < last; length *= 2) {
-    const int to = std::min(from + length, last);
-    if (!fits(curve, from, to, tolerance)) {
-      bad = to;
-      break;
-    }
-    good = to;
-  }
-  while (bad - good > 1) {
-    const int middle = (good + bad) / 2;
-    (fits(curve, from, middle, tolerance) ? good : bad) = middle;
-  }
-  return good;
-}
-
-void interpolate(Curve& curve, int from, int to) {
-  curve.reduced[from] = curve.wanted[from];
-  curve.reduced[to] = curve.wanted[to];
-  each_between(curve.path, curve.wanted[from], curve.wanted[to], to - from, [&](int k, const Value& v) {
-    curve.reduced[from + k] = v;
-    return true;
-  });
-}
-
-void choose_keys(Curve& curve, double tolerance_m) {
-  const int last = static_cast<int>(curve.wanted.size()) - 1;
-  const double tolerance = kShare * tolerance_m / std::max(curve.reach_m, 1e-12);
-  curve.keys = {0};
-  for (int from = 0; from < last; from = curve.keys.back()) {
-    curve.keys.push_back(longest_piece(curve, from, tolerance));
-    interpolate(curve, from, curve.keys.back());
-  }
 }
 
 /// The skeleton in world metres, and how far its nodes reach.
@@ -137,6 +56,7 @@ class Rig {
     }
     return result;
   }
+  const Affine& world_from_file() const { return world_from_file_; }
   double reach_m(int node, TrackPath path) const {
     return path == TrackPath::translation ? metres_per_unit_[node] : reach_m_[node];
   }
@@ -175,173 +95,255 @@ class Rig {
   std::vector<double> metres_per_unit_;  // of the node's translation
 };
 
-/// The quantity over the clip; rotations in continuous signs.
-Curve curve_of(const Clip& clip, int node, TrackPath path, double reach_m) {
-  Curve curve{node, path, reach_m, {}, {}, {}};
+/// The quantity over the clip, with a key at every frame; rotations in continuous signs.
+KeyCurve curve_of(const Clip& clip, int node, TrackPath path) {
+  KeyCurve curve{node, path, {}, {}, {}, {}};
   curve.wanted.reserve(clip.frames.size());
   for (const Pose& pose : clip.frames) {
-    Value value = value_of(pose[node], path);
+    KeyValue value = value_of(pose[node], path);
     if (path == TrackPath::rotation && !curve.wanted.empty() && value.dot(curve.wanted.back()) < 0)
       value = -value;
     curve.wanted.push_back(value);
   }
   curve.reduced = curve.wanted;
+  curve.values = curve.wanted;
+  curve.keys.resize(curve.wanted.size());
+  std::iota(curve.keys.begin(), curve.keys.end(), 0);
   return curve;
 }
 
-bool is_still(const Curve& curve) {
-  return std::all_of(curve.wanted.begin(), curve.wanted.end(), [&](const Value& v) {
-    return curve.reach_m * distance(curve.path, v, curve.wanted.front()) <= kStillM;
+bool is_still(const KeyCurve& curve, double reach_m) {
+  return std::all_of(curve.wanted.begin(), curve.wanted.end(), [&](const KeyValue& v) {
+    return reach_m * distance(curve.path, v, curve.wanted.front()) <= kStillM;
   });
 }
 
-bool is_rest(const Curve& curve, const LocalTransform& rest) {
-  Value value = value_of(rest, curve.path);
+bool is_rest(const KeyCurve& curve, const LocalTransform& rest, double reach_m) {
+  KeyValue value = value_of(rest, curve.path);
   if (curve.path == TrackPath::rotation && value.dot(curve.wanted.front()) < 0) value = -value;
-  return curve.reach_m * distance(curve.path, value, curve.wanted.front()) <= kStillM;
+  return reach_m * distance(curve.path, value, curve.wanted.front()) <= kStillM;
+}
+
+void keep_one_key(KeyCurve& curve) {
+  curve.keys = {0};
+  curve.values.resize(1);
+  std::fill(curve.reduced.begin(), curve.reduced.end(), curve.values.front());
 }
 
 /// Curves of what moves or rests elsewhere, with all keys or a single one.
-std::vector<Curve> curves_of(const Skeleton& skeleton, const Clip& clip, const Rig& rig) {
-  std::vector<Curve> curves;
+std::vector<KeyCurve> curves_of(const Skeleton& skeleton, const Clip& clip, const Rig& rig) {
+  std::vector<KeyCurve> curves;
   for (int node = 0; node < skeleton.size(); ++node) {
     for (const TrackPath path : {TrackPath::translation, TrackPath::rotation, TrackPath::scale}) {
-      Curve curve = curve_of(clip, node, path, rig.reach_m(node, path));
-      const bool still = is_still(curve);
-      if (still && is_rest(curve, skeleton.nodes[node].rest)) continue;
-      curve.keys.resize(still ? 1 : clip.frames.size());
-      for (std::size_t i = 0; i < curve.keys.size(); ++i) curve.keys[i] = static_cast<int>(i);
+      KeyCurve curve = curve_of(clip, node, path);
+      const double reach_m = rig.reach_m(node, path);
+      const bool still = is_still(curve, reach_m);
+      if (still && is_rest(curve, skeleton.nodes[node].rest, reach_m)) continue;
+      if (still) keep_one_key(curve);
       curves.push_back(std::move(curve));
     }
   }
   return curves;
 }
 
-/// The reduced clip against the whole one, frame by frame.
-class Check {
+/// The reduced clip against the whole one, node by node and frame by frame.
+class Reduction {
  public:
-  Check(const Skeleton& skeleton, const Clip& clip, const Rig& rig, std::vector<Curve>& curves)
-      : skeleton_(skeleton),
-        rig_(rig),
-        curves_(curves),
-        pose_(rest_pose(skeleton)),
-        error_m_(clip.frames.size()) {
-    wanted_.reserve(clip.frames.size());
-    for (const Pose& pose : clip.frames) wanted_.push_back(rig.world(pose));
+  Reduction(const Skeleton& skeleton, const Clip& clip, const Rig& rig, std::vector<KeyCurve>& curves)
+      : skeleton_(skeleton), rig_(rig), curves_(curves), below_(skeleton.nodes.size()) {
+    for (const int node : skeleton.order)
+      for (int above = node; above >= 0; above = skeleton.nodes[above].parent) below_[above].push_back(node);
     by_node_.resize(skeleton.nodes.size());
     for (std::size_t i = 0; i < curves.size(); ++i) by_node_[curves[i].node].push_back(i);
-    worst_.resize(clip.frames.size(), -1);
-    dirty_.assign(clip.frames.size(), true);
+    for (const Pose& pose : clip.frames) {
+      wanted_.push_back(rig.world(pose));
+      local_.push_back(pose);
+    }
+    world_ = wanted_;
+    error_m_.assign(clip.frames.size(), std::vector<double>(skeleton.nodes.size(), 0.0));
+    pinned_ = {0, static_cast<int>(clip.frames.size()) - 1};
+    for (const Mark& mark : clip.marks)
+      if (mark.name == "impact") pinned_.push_back(static_cast<int>(std::lround(mark.time_s * clip.fps)));
+    std::sort(pinned_.begin(), pinned_.end());
+    pinned_.erase(std::unique(pinned_.begin(), pinned_.end()), pinned_.end());
   }
 
-  /// Puts keys back until no node is further off than the tolerance, or no key is left to put back.
-  void repair(double tolerance_m) {
-    do measure();
-    while (add_keys(tolerance_m));
-  }
-  double error_m() {
-    measure();
-    return error_m_.empty() ? 0.0 : *std::max_element(error_m_.begin(), error_m_.end());
-  }
-
- private:
-  void measure() {
-    for (std::size_t frame = 0; frame < wanted_.size(); ++frame) {
-      if (!dirty_[frame]) continue;
-      dirty_[frame] = false;
-      for (const Curve& curve : curves_)
-        set_value(pose_[curve.node], curve.path, curve.reduced[curve.keys.size() == 1 ? 0 : frame]);
-      const std::vector<Affine> world = rig_.world(pose_);
-      error_m_[frame] = 0.0;
-      for (int node = 0; node < skeleton_.size(); ++node) {
-        const double error = rig_.distance_m(node, world[node], wanted_[frame][node]);
-        if (error < error_m_[frame]) continue;
-        error_m_[frame] = error;
-        worst_[frame] = node;
-      }
+  void run(double bound_m) {
+    bound_m_ = bound_m;
+    for (KeyCurve& curve : curves_) {
+      tolerance_.push_back(kShare * bound_m_ / std::max(rig_.reach_m(curve.node, curve.path), 1e-12));
+      if (curve.is_single()) continue;
+      choose_keys(curve, tolerance_.back(), pinned_);
+      fit_values(curve, tolerance_.back(), 0, static_cast<int>(curve.keys.size()) - 1, pinned_);
+    }
+    measure_all();
+    while (repair()) {
+    }
+    for (int pass = 0; pass < kRemovalPasses && remove_keys(); ++pass) {
     }
   }
 
-  /// The curve above the worst node that contributes most at this frame; none where all have a key there.
-  Curve* culprit(int frame) {
-    Curve* found = nullptr;
+  /// Of all nodes and frames.
+  double error_m() {
+    measure_all();
     double largest = 0.0;
-    for (int node = worst_[frame]; node >= 0; node = skeleton_.nodes[node].parent) {
+    for (const auto& frame : error_m_)
+      for (const double error : frame) largest = std::max(largest, error);
+    return largest;
+  }
+
+ private:
+  int frames() const { return static_cast<int>(wanted_.size()); }
+
+  /// Takes a curve's value at a frame over and moves what hangs on it. False, and not all is moved, once a
+  /// node is too far off and `limit` is given.
+  bool move(const KeyCurve& curve, int f, double limit_m = std::numeric_limits<double>::infinity()) {
+    set_value(local_[f][curve.node], curve.path, curve.reduced[f]);
+    for (const int node : below_[curve.node]) {
+      measure(f, node);
+      if (error_m_[f][node] > limit_m) return false;
+    }
+    return true;
+  }
+  void measure_all() {
+    for (int f = 0; f < frames(); ++f) {
+      for (const KeyCurve& curve : curves_) set_value(local_[f][curve.node], curve.path, curve.reduced[f]);
+      for (const int node : skeleton_.order) measure(f, node);
+    }
+  }
+  void measure(int f, int node) {
+    const int parent = skeleton_.nodes[node].parent;
+    world_[f][node] = (parent < 0 ? rig_.world_from_file() : world_[f][parent]) * local_[f][node].affine();
+    error_m_[f][node] = rig_.distance_m(node, world_[f][node], wanted_[f][node]);
+  }
+
+  // ---- keys put back
+
+  /// Makes curves exact, the largest contribution first, until no node is too far off. True where that moved
+  /// frames that had been looked at.
+  bool repair() {
+    int mended = 0;
+    for (int f = 0; f < frames(); ++f) {
+      const std::vector<double>& errors = error_m_[f];
+      for (auto worst = std::max_element(errors.begin(), errors.end());
+           *worst > bound_m_ && mend(f, static_cast<int>(worst - errors.begin()));
+           worst = std::max_element(errors.begin(), errors.end()))
+        ++mended;
+    }
+    return mended > 0;
+  }
+  /// Makes the curve exact that moves the worst node most; false where all above it are.
+  bool mend(int f, int worst) {
+    KeyCurve* found = nullptr;
+    double largest = 1e-9 * bound_m_;
+    for (int node = worst; node >= 0; node = skeleton_.nodes[node].parent) {
       for (const std::size_t i : by_node_[node]) {
-        Curve& curve = curves_[i];
+        KeyCurve& curve = curves_[i];
+        if (curve.is_single()) continue;
         const double share =
-            lever_m(curve, frame) * distance(curve.path, curve.reduced[frame], curve.wanted[frame]);
-        if (share <= largest || curve.keys.size() == 1) continue;
-        if (std::binary_search(curve.keys.begin(), curve.keys.end(), frame)) continue;
+            lever_m(curve, worst, f) * distance(curve.path, curve.reduced[f], curve.wanted[f]);
+        if (share <= largest) continue;
         largest = share;
         found = &curve;
       }
     }
-    return found;
+    if (found == nullptr) return false;
+    make_exact(*found, f);
+    return true;
   }
-  double lever_m(const Curve& curve, int frame) const {
-    if (curve.path == TrackPath::translation) return curve.reach_m;
-    const std::vector<Affine>& world = wanted_[frame];
-    return std::max((world[worst_[frame]].translation() - world[curve.node].translation()).norm(), kTipMinM);
+  double lever_m(const KeyCurve& curve, int worst, int f) const {
+    if (curve.path == TrackPath::translation) return rig_.reach_m(curve.node, curve.path);
+    return std::max((wanted_[f][worst].translation() - wanted_[f][curve.node].translation()).norm(),
+                    kTipMinM);
+  }
+  void make_exact(KeyCurve& curve, int f) {
+    const auto at = std::lower_bound(curve.keys.begin(), curve.keys.end(), f);
+    const int k = static_cast<int>(at - curve.keys.begin());
+    if (*at == f) {
+      curve.values[k] = curve.wanted[f];
+    } else {
+      curve.keys.insert(at, f);
+      curve.values.insert(curve.values.begin() + k, curve.wanted[f]);
+    }
+    const int first = std::max(k - 1, 0);
+    const int last = std::min(k + 1, static_cast<int>(curve.keys.size()) - 1);
+    interpolate(curve, first, last);
+    for (int g = curve.keys[first]; g <= curve.keys[last]; ++g) move(curve, g);
   }
 
-  /// One key for each piece that is to blame, at its worst frame.
-  bool add_keys(double tolerance_m) {
-    std::vector<std::pair<Curve*, int>> wanted;  // curve, frame; the worst frame first
-    std::vector<int> frames;
-    for (int frame = 0; frame < static_cast<int>(wanted_.size()); ++frame)
-      if (error_m_[frame] > tolerance_m) frames.push_back(frame);
-    std::stable_sort(frames.begin(), frames.end(), [&](int a, int b) { return error_m_[a] > error_m_[b]; });
-    for (const int frame : frames)
-      if (Curve* curve = culprit(frame)) wanted.emplace_back(curve, frame);
-    bool added = false;
-    for (const auto& [curve, frame] : wanted) added |= add_key(*curve, frame);
-    return added;
+  // ---- keys taken away
+
+  bool remove_keys() {
+    bool removed = false;
+    for (std::size_t i = 0; i < curves_.size(); ++i) {
+      for (int k = 1; k + 1 < static_cast<int>(curves_[i].keys.size());) {
+        if (!std::binary_search(pinned_.begin(), pinned_.end(), curves_[i].keys[k]) && remove_key(i, k))
+          removed = true;
+        else
+          ++k;
+      }
+    }
+    return removed;
   }
-  /// False where this pass has touched the piece already.
-  bool add_key(Curve& curve, int frame) {
-    const auto after = std::upper_bound(curve.keys.begin(), curve.keys.end(), frame);
-    const int to = *after;
-    const int from = *(after - 1);
-    if (from == frame || dirty_[frame]) return false;
-    curve.keys.insert(after, frame);
-    interpolate(curve, from, frame);
-    interpolate(curve, frame, to);
-    std::fill(dirty_.begin() + from + 1, dirty_.begin() + to, true);
+  bool remove_key(std::size_t i, int k) {
+    KeyCurve& curve = curves_[i];
+    if (!is_short_way(curve.path, curve.values[k - 1], curve.values[k + 1])) return false;
+    const KeyCurve before = curve;
+    const int removed = curve.keys[k];
+    curve.keys.erase(curve.keys.begin() + k);
+    curve.values.erase(curve.values.begin() + k);
+    interpolate(curve, k - 1, k);
+    fit_values(curve, tolerance_[i], k - 1, k, pinned_);
+    std::vector<int> changed(before.keys[std::min<std::size_t>(k + 2, before.keys.size() - 1)] -
+                             before.keys[std::max(k - 2, 0)] + 1);
+    std::iota(changed.begin(), changed.end(), before.keys[std::max(k - 2, 0)]);
+    const auto distance_to_removed = [&](int f) { return std::abs(f - removed); };
+    std::stable_sort(changed.begin(), changed.end(),
+                     [&](int a, int b) { return distance_to_removed(a) < distance_to_removed(b); });
+    for (auto f = changed.begin(); f != changed.end(); ++f) {
+      if (move(curve, *f, bound_m_)) continue;
+      curve = before;
+      std::for_each(changed.begin(), f + 1, [&](int g) { move(curve, g); });
+      return false;
+    }
     return true;
   }
 
   const Skeleton& skeleton_;
   const Rig& rig_;
-  std::vector<Curve>& curves_;
-  Pose pose_;
-  std::vector<std::vector<Affine>> wanted_;
-  std::vector<std::vector<std::size_t>> by_node_;
-  std::vector<double> error_m_;
-  std::vector<int> worst_;
-  std::vector<bool> dirty_;
+  std::vector<KeyCurve>& curves_;
+  double bound_m_ = 0.0;
+  std::vector<int> pinned_;
+  std::vector<std::vector<int>> below_;            // the node and what hangs on it, parents first
+  std::vector<std::vector<std::size_t>> by_node_;  // curves
+  std::vector<double> tolerance_;                  // per curve
+  std::vector<std::vector<Affine>> wanted_, world_;
+  std::vector<Pose> local_;
+  std::vector<std::vector<double>> error_m_;  // per frame and node
 };
 
-Track track_of(const Curve& curve, double fps) {
+Track track_of(const KeyCurve& curve, double fps) {
   Track track{curve.node, curve.path, Interpolation::linear, {}, {}};
   const int width = curve.path == TrackPath::rotation ? 4 : 3;
-  for (const int key : curve.keys) {
-    track.times.push_back(key / fps);
-    for (int i = 0; i < width; ++i) track.values.push_back(curve.wanted[key][i]);
+  for (std::size_t k = 0; k < curve.keys.size(); ++k) {
+    track.times.push_back(curve.keys[k] / fps);
+    for (int i = 0; i < width; ++i) track.values.push_back(curve.values[k][i]);
   }
   return track;
 }
 
 /// A clip in which nothing moves still lasts as long as it does: its first curve gets a key at the end.
-void keep_duration(std::vector<Curve>& curves, const Skeleton& skeleton, const Clip& clip) {
+void keep_duration(std::vector<KeyCurve>& curves, const Skeleton& skeleton, const Clip& clip) {
   const int last = static_cast<int>(clip.frames.size()) - 1;
-  const auto lasts = [&](const Curve& curve) { return curve.keys.back() == last; };
+  const auto lasts = [&](const KeyCurve& curve) { return curve.keys.back() == last; };
   if (skeleton.order.empty() || std::any_of(curves.begin(), curves.end(), lasts)) return;
   if (curves.empty()) {
-    curves.push_back(curve_of(clip, skeleton.order.front(), TrackPath::translation, 0.0));
-    curves.back().keys = {0};
+    curves.push_back(curve_of(clip, skeleton.order.front(), TrackPath::translation));
+    keep_one_key(curves.back());
   }
-  if (last > 0) curves.front().keys.push_back(last);
+  if (last == 0) return;
+  curves.front().keys.push_back(last);
+  curves.front().values.push_back(curves.front().values.front());
 }
 
 }  // namespace
@@ -351,15 +353,12 @@ ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Simila
   ReducedClip result{clip.name, {}, 0, 0.0, clip.marks};
   if (clip.frames.empty()) return result;
   const Rig rig(skeleton, clip, world_from_file);
-  std::vector<Curve> curves = curves_of(skeleton, clip, rig);
-  if (settings.enabled)
-    for (Curve& curve : curves)
-      if (curve.keys.size() > 1) choose_keys(curve, settings.tolerance_m);
-  Check check(skeleton, clip, rig, curves);
-  if (settings.enabled) check.repair(settings.tolerance_m);
-  result.error_m = check.error_m();
+  std::vector<KeyCurve> curves = curves_of(skeleton, clip, rig);
+  Reduction reduction(skeleton, clip, rig, curves);
+  if (settings.enabled) reduction.run(settings.tolerance_m);
+  result.error_m = reduction.error_m();
   keep_duration(curves, skeleton, clip);
-  for (const Curve& curve : curves) {
+  for (const KeyCurve& curve : curves) {
     result.tracks.push_back(track_of(curve, clip.fps));
     result.keys += curve.keys.size();
   }

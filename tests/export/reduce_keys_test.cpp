@@ -107,6 +107,34 @@ TEST(ReduceKeys, KeepsAThirdOfTheKeysAtHalfAMillimetre) {
   EXPECT_LT(3 * reduced.keys, all);
 }
 
+TEST(ReduceKeys, MovesKeysOffTheSourceToSpareSome) {
+  const Skeleton skeleton = arm(1.0);
+  const Clip clip = turning(skeleton, 241, [](double t) { return Vec3(0, 0, 0.05 * t * t); });
+  const ReducedClip reduced = reduce_keys(skeleton, clip, {}, {true, 0.0005});
+  EXPECT_LE(test::largest_distance_m(skeleton, clip, reduced.tracks, {}), 0.0005 + 1e-9);
+  // 0.1 rad/s^2 on 1.2 m (the tip of the lower arm): a piece of h seconds is off by 0.12 h^2 / 16, and by
+  // twice that where its keys are points of the source.
+  const double longest_s = std::sqrt(16 * 0.0005 / 0.12);
+  EXPECT_LT(static_cast<double>(reduced.keys), 1.25 * 4.0 / longest_s)
+      << "source keys take 1.41 times as many";
+}
+
+TEST(ReduceKeys, LeavesTheFirstTheLastAndTheImpactFrameAsTheyAre) {
+  const test::Puppet puppet = test::make_puppet();
+  const Skeleton& skeleton = puppet.character.skeleton;
+  Clip clip = test::falling_clip(skeleton);
+  clip.marks = {{"impact", 20 / clip.fps}};
+  const ReducedClip reduced = reduce_keys(skeleton, clip, {}, {true, 0.005});
+  const Animation animation{"", 0, clip.duration_s(), 0, reduced.tracks};
+  for (const std::size_t frame : {std::size_t{0}, std::size_t{20}, clip.frames.size() - 1}) {
+    const Pose pose = sample(skeleton, animation, static_cast<double>(frame) / clip.fps);
+    for (std::size_t node = 0; node < pose.size(); ++node) {
+      EXPECT_LT(angle_between(pose[node].rotation, clip.frames[frame][node].rotation), 1e-7) << frame;
+      EXPECT_LT((pose[node].translation - clip.frames[frame][node].translation).norm(), 1e-7) << frame;
+    }
+  }
+}
+
 TEST(ReduceKeys, KeepsEveryKeyOfWhatMovesWhenSwitchedOff) {
   const test::Puppet puppet = test::make_puppet();
   const Clip clip = test::falling_clip(puppet.character.skeleton, 31);
