@@ -6,14 +6,19 @@
 #include <chrono>
 #include <cmath>
 
+#include "bake/append.h"
+#include "bake/clip_timing.h"
 #include "bake/frames.h"
+#include "bake/ground_motion.h"
 #include "bake/impact.h"
 #include "bake/outputs.h"
 #include "bake/report.h"
 #include "bake/settings.h"
 #include "bake/sheet.h"
+#include "bake/smooth.h"
 #include "base/files.h"
 #include "body/ground.h"
+#include "export/additive.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -93,37 +98,62 @@ void make_clip(const Character& character, BakeOutcome& outcome) {
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
-Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Character& character,
-                                               const BakeSettings& settings, const BakeOutcome& outcome,
-                                               const ReducedClip& reduced) {
-  const OutputFormat format = *output_format(path);
-  if (format == OutputFormat::bvh) {
-    BvhOptions options;
-    if (settings.bvh_metres_per_unit) options.metres_per_unit = *settings.bvh_metres_per_unit;
-    const auto text = write_bvh(character, outcome.humanoid, outcome.clip, options);
-    if (!text) return text.error();
-    return bytes_of(*text);
-  }
-  const SegmentFrames frames =
-      segment_frames(character.skeleton, outcome.humanoid, outcome.start.pose, outcome.start.segments);
-  const GltfOptions options{settings.clip_only,
-                            animation_extras(character.skeleton, frames, outcome.clip.marks)};
-  if (format == OutputFormat::glb) return write_glb(character, outcome.humanoid, reduced, options);
-  const auto text = write_gltf(character, outcome.humanoid, reduced, options);
+Result<std::vector<std::uint8_t>> bvh_bytes(const Character& character, const BakeSettings& settings,
+                                            const BakeOutcome& outcome, const Clip& clip) {
+  BvhOptions options;
+  if (settings.bvh_metres_per_unit) options.metres_per_unit = *settings.bvh_metres_per_unit;
+  const auto text = write_bvh(character, outcome.humanoid, clip, options);
   if (!text) return text.error();
   return bytes_of(*text);
+}
+
+std::string extras_of(const Character& character, const BakeSettings& settings, const BakeOutcome& outcome) {
+  const SegmentFrames frames =
+      segment_frames(character.skeleton, outcome.humanoid, outcome.start.pose, outcome.start.segments);
+  return animation_extras(character.skeleton, frames, outcome.clip.marks,
+                          {std::string(name(settings.root_motion)), settings.additive});
+}
+
+Result<std::vector<std::uint8_t>> gltf_bytes(const fs::path& path, const Character& character,
+                                             const BakedFile& baked, const Humanoid& humanoid,
+                                             const GltfOptions& options) {
+  if (output_format(path) == OutputFormat::glb) return write_glb(character, humanoid, baked.reduced, options);
+  const auto text = write_gltf(character, humanoid, baked.reduced, options);
+  if (!text) return text.error();
+  return bytes_of(*text);
+}
+
+Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Character& character,
+                                               const BakeSettings& settings, const BakedFile& baked,
+                                               const ExportedClip& exported) {
+  if (output_format(path) == OutputFormat::bvh)
+    return bvh_bytes(character, settings, baked.outcome,
+                     exported.root_joint < 0 ? exported.clip : exported.on_hips);
+  const Character& shown = exported.with_root ? *exported.with_root : character;
+  GltfOptions options{settings.clip_only, extras_of(character, settings, baked.outcome),
+                      path.has_parent_path() ? path.parent_path() : fs::path(".")};
+  if (!settings.append || !fs::exists(path))
+    return gltf_bytes(path, shown, baked, exported.humanoid, options);
+  const auto earlier = file_to_append_to(path, shown);
+  if (!earlier) return earlier.error();
+  options.clip_only = false;  // what the file holds stays
+  return gltf_bytes(path, *earlier, baked, exported.humanoid, options);
 }
 
 /// Fills `baked.files`.
 Status prepare_files(const Character& character, const BakeSettings& settings, BakedFile& baked) {
   Stopwatch watch;
-  baked.reduced = reduce_keys(character.skeleton, baked.outcome.clip, baked.outcome.humanoid.world_from_file,
-                              settings.keys);
+  auto exported = exported_clip(character, settings, baked.outcome);
+  if (!exported) return exported.error();
+  const Skeleton& skeleton = exported->with_root ? exported->with_root->skeleton : character.skeleton;
+  baked.reduced = reduce_keys(skeleton, exported->clip, exported->humanoid.world_from_file, settings.keys);
+  if (settings.additive) baked.reduced = additive(baked.reduced, exported->clip.frames.front());
   for (const fs::path& path : settings.outputs) {
-    auto bytes = output_bytes(path, character, settings, baked.outcome, baked.reduced);
+    auto bytes = output_bytes(path, character, settings, baked, *exported);
     if (!bytes) return bytes.error();
     baked.files.push_back({path, std::move(*bytes)});
   }
+  baked.root_curve = std::move(exported->root_curve);
   baked.outcome.timings_s.export_ = watch.lap();
   if (!settings.sheet.empty()) {
     auto png = bake_sheet(character, settings, baked.outcome);
@@ -136,6 +166,27 @@ Status prepare_files(const Character& character, const BakeSettings& settings, B
     baked.files.push_back({settings.preview, std::move(*webp)});
   }
   baked.outcome.timings_s.render = watch.lap();
+  return Done{};
+}
+
+Error usage(std::string what, std::string fix) {
+  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+/// Settings that do not go together.
+Status check_combinations(const BakeSettings& settings) {
+  const bool to_bvh = std::any_of(settings.outputs.begin(), settings.outputs.end(), [](const fs::path& path) {
+    return output_format(path) == OutputFormat::bvh;
+  });
+  if (settings.smooth_hz && *settings.smooth_hz >= 0.5 * settings.simulation.fps)
+    return usage(fmt::format("--smooth {} is not below half of the {} frames per second", *settings.smooth_hz,
+                             settings.simulation.fps),
+                 "give a lower cut-off, or more --fps");
+  if (settings.additive && to_bvh)
+    return usage("--additive is for glTF: a BVH cannot say what its motion is added to",
+                 "leave the .bvh away, or write it by a bake of its own");
+  if (settings.append && to_bvh)
+    return usage("--append is for glTF: a BVH holds one motion", "leave the .bvh away");
   return Done{};
 }
 
@@ -157,6 +208,7 @@ std::string reaction_name(const BakeSettings& settings) {
 
 Status check_settings(const std::string& character, const BakeSettings& settings) {
   if (const Status status = check_values(settings); !status) return status.error();
+  if (const Status status = check_combinations(settings); !status) return status.error();
   return check_outputs(character, settings);
 }
 
@@ -173,6 +225,8 @@ Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings&
   auto start = start_of(character, outcome.humanoid, settings, diagnostics);
   if (!start) return start.error();
   outcome.start = std::move(*start);
+  if (settings.recover_s && settings.recover_to == RecoverTo::clip && !outcome.start.motion)
+    return usage("--to clip needs a start clip to go back to", "add --clip NAME, or take --to rest");
   auto body = build_body(character, outcome.humanoid, outcome.start.pose, outcome.start.segments,
                          BodyOptions{settings.mass_kg.value_or(0.0), settings.sex}, diagnostics);
   if (!body) return body.error();
@@ -198,6 +252,10 @@ Result<BakeOutcome> bake(const Character& character, const BakeSettings& setting
     trim_still_tail(outcome.simulation.trajectory, outcome.simulation.figures.rest_time_s, settings.hold_s);
   outcome.timings_s.simulate = watch.lap();
   make_clip(character, outcome);
+  if (settings.extra_bones_play) play_extra_bones(character, outcome);
+  if (settings.smooth_hz) smooth(outcome.clip, *settings.smooth_hz);
+  add_lead(character, settings, outcome);
+  add_recovery(character, settings, outcome);
   outcome.timings_s.resample = watch.lap();
   outcome.timings_s.total = watch.total();
   return outcome;
@@ -207,7 +265,7 @@ Result<BakedFile> bake_loaded(const Character& character, const BakeSettings& se
                               Diagnostics& diagnostics) {
   auto outcome = bake(character, settings, diagnostics);
   if (!outcome) return outcome.error();
-  BakedFile baked{std::move(*outcome), {}, {}, {}};
+  BakedFile baked{std::move(*outcome), {}, {}, {}, {}};
   if (const Status status = prepare_files(character, settings, baked); !status) return status.error();
   baked.outcome.timings_s.total += baked.outcome.timings_s.export_ + baked.outcome.timings_s.render;
   return baked;
@@ -237,7 +295,8 @@ Result<BakedFile> bake_file(const std::string& character, const BakeSettings& se
   if (const Status status = write_files(*baked); !status) return status.error();
   baked->outcome.timings_s.load += load_s;
   baked->outcome.timings_s.total = watch.total();
-  baked->report = report_json(character, *loaded, settings, baked->outcome, baked->reduced, diagnostics);
+  baked->report = report_json(character, *loaded, settings, baked->outcome, baked->reduced, diagnostics,
+                              baked->root_curve);
   if (!settings.report.empty())
     if (const Status status = write_file(settings.report, baked->report); !status) return status.error();
   return baked;

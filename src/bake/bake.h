@@ -21,6 +21,12 @@
 
 namespace ukemi {
 
+/// What a clip goes back to, see add_recovery: the start pose, or what the start clip plays by then.
+enum class RecoverTo { rest, clip };
+
+/// What takes the motion over the ground: the hips as simulated, a root joint above them, or nothing.
+enum class RootMotion { hips, root, in_place };
+
 /// Everything that one bake may be told. Defaults are the program's.
 struct BakeSettings {
   // hit
@@ -49,8 +55,17 @@ struct BakeSettings {
   // clip
   bool until_rest = true;  // trim the still tail
   double hold_s = 0.25;    // kept of it
+  double lead_s = 0.0;     // of the start, before the impact
+  std::optional<double> recover_s;
+  RecoverTo recover_to = RecoverTo::rest;
+  RootMotion root_motion = RootMotion::hips;
+  bool align = false;               // starts at the origin, facing +z
+  bool additive = false;            // difference from the first frame
+  bool extra_bones_play = false;    // bones of no segment play the start clip on
+  std::optional<double> smooth_hz;  // cut-off of a zero-phase filter
   KeyReduction keys;
   // out
+  bool append = false;   // to the clips that an output holds
   std::string reaction;  // name of the clip; empty: SEGMENT_FROM
   std::vector<std::filesystem::path> outputs;
   bool clip_only = false;  // glTF without the mesh
@@ -75,8 +90,10 @@ struct BakeOutcome {
   RangeOfMotion range;                            // in force: widened joints included
   std::vector<std::pair<Joint, double>> widened;  // radians
   Scene scene;
-  SimulationResult simulation;     // trajectory above a floor at y = 0, its still tail trimmed
-  Clip clip;                       // where the file places the figure
+  SimulationResult simulation;     // trajectory above a floor at y = 0, its still tail trimmed, lead
+                                   // and recovery added
+  Clip clip;                       // where the file places the figure; a frame per frame of the trajectory
+  double impact_s = 0.0;           // in the clip
   double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
   ResampleError resample_error;
   BakeTimings timings_s;
@@ -91,6 +108,7 @@ struct OutputFile {
 struct BakedFile {
   BakeOutcome outcome;
   ReducedClip reduced;
+  std::vector<Vec3> root_curve;   // see ExportedClip
   std::vector<OutputFile> files;  // clips and pictures
   std::string report;             // JSON, format 1
 };

@@ -66,7 +66,7 @@ PerSegment<Quat> rotations_of(const Skeleton& skeleton, const SegmentFrames& fra
 }
 
 std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames,
-                             const std::vector<Mark>& marks) {
+                             const std::vector<Mark>& marks, const ClipFacts& facts) {
   Json segments = Json::object();
   for (int i = 0; i < kSegmentCount; ++i) {
     const Quat& q = frames.segment_from_node[i];
@@ -74,9 +74,12 @@ std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& fram
     if (frames.node[i] < 0) continue;
     segment = {{"node", skeleton.label(frames.node[i])}, {"segment_from_node", {q.x(), q.y(), q.z(), q.w()}}};
   }
-  Json json = {{"ukemi", {{"format", 1}, {"generator", generator()}, {"segments", std::move(segments)}}}};
-  for (const Mark& mark : marks)
-    json["ukemi"]["marks"].push_back({{"name", mark.name}, {"time_s", mark.time_s}});
+  Json ours = {{"format", 1}, {"generator", generator()}};
+  if (!facts.additive) ours["segments"] = std::move(segments);
+  for (const Mark& mark : marks) ours["marks"].push_back({{"name", mark.name}, {"time_s", mark.time_s}});
+  ours["root_motion"] = facts.root_motion;
+  ours["additive"] = facts.additive;
+  const Json json = {{"ukemi", std::move(ours)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

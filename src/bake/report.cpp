@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "bake/frames.h"
@@ -12,6 +13,10 @@ namespace ukemi {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+// 99.9th percentile of the elbow, the joint where it is largest, over 30 clips of walking, running, fighting
+// and dancing at 30 to 120 Hz, low-passed at 12 Hz. No clip of them holds a blow.
+constexpr double kRealJerk_deg_s3 = 2.11e6;
 
 template <typename T>
 Json or_null(const std::optional<T>& value) {
@@ -42,6 +47,13 @@ Json settings_json(const BakeSettings& settings, const BakeOutcome& outcome) {
   json["at_s"] = outcome.start.from_clip ? Json(outcome.start.at_s) : Json(nullptr);
   json["until_rest"] = settings.until_rest;
   json["hold_s"] = settings.until_rest ? Json(settings.hold_s) : Json(nullptr);
+  json["lead_s"] = outcome.impact_s;
+  json["recover_s"] = or_null(settings.recover_s);
+  json["recover_to"] =
+      settings.recover_s ? Json(settings.recover_to == RecoverTo::clip ? "clip" : "rest") : Json(nullptr);
+  json["align"] = settings.align;
+  json["extra_bones"] = settings.extra_bones_play ? "clip" : "hold";
+  json["smooth_hz"] = or_null(settings.smooth_hz);
   json["keys"] = settings.keys.enabled ? "reduced" : "all";
   json["key_error_mm"] = settings.keys.enabled ? Json(settings.keys.tolerance_m * 1000.0) : Json(nullptr);
   return json;
@@ -74,9 +86,10 @@ Json humanoid_json(const Character& character, const BakeOutcome& outcome) {
   return json;
 }
 
-/// Distance of the joints of the clip's first frame from the pose it starts from.
+/// Distance of the joints of the clip's impact frame from the pose it starts from.
 double position_jump(const Character& character, const BakeOutcome& outcome) {
-  const BodyPose first = segments_of(character.skeleton, outcome.humanoid, outcome.clip.frames.front());
+  const auto impact = static_cast<std::size_t>(std::lround(outcome.impact_s * outcome.clip.fps));
+  const BodyPose first = segments_of(character.skeleton, outcome.humanoid, outcome.clip.frames[impact]);
   double largest = 0.0;
   for (int i = 0; i < kSegmentCount; ++i)
     largest = std::max(largest, (first[i].translation - outcome.start.segments[i].translation).norm());
@@ -88,9 +101,10 @@ Json impact_json(const Character& character, const BakeSettings& settings, const
   Json json;
   json["segment"] = name(scene.target);
   json["preset"] = or_null(preset_in_use(settings));
-  json["time_s"] = 0.0;
+  json["time_s"] = outcome.impact_s;
   json["momentum_n_s"] = outcome.simulation.figures.momentum_n_s;
-  json["first_ground_contact_s"] = or_null(outcome.simulation.figures.first_ground_contact_s);
+  const std::optional<double>& contact_s = outcome.simulation.figures.first_ground_contact_s;
+  json["first_ground_contact_s"] = contact_s ? Json(outcome.impact_s + *contact_s) : Json(nullptr);
   const bool from_clip = outcome.start.from_clip;
   json["position_jump_m"] = from_clip ? Json(position_jump(character, outcome)) : Json(nullptr);
   json["velocity_jump_m_s"] =
@@ -149,6 +163,18 @@ Json simulation_json(const SimulationFigures& figures) {
   return json;
 }
 
+Json root_curve_json(const std::vector<Vec3>& curve) {
+  Json json = Json::array();
+  for (const Vec3& place : curve) json.push_back({place.x(), place.z()});
+  return json;
+}
+
+Json marks_json(const Clip& clip) {
+  Json json = Json::object();
+  for (const Mark& mark : clip.marks) json[mark.name] = mark.time_s;
+  return json;
+}
+
 Json clip_json(const BakeSettings& settings, const BakeOutcome& outcome, const ReducedClip& reduced) {
   Json json;
   json["frames"] = outcome.clip.frames.size();
@@ -163,6 +189,11 @@ Json clip_json(const BakeSettings& settings, const BakeOutcome& outcome, const R
   for (const auto& output : settings.outputs) json["outputs"].push_back(output.string());
   json["name"] = outcome.clip.name;
   json["duration_s"] = outcome.clip.duration_s();
+  json["marks_s"] = marks_json(outcome.clip);
+  json["root_motion"] = name(settings.root_motion);
+  json["additive"] = settings.additive;
+  json["root_curve_m"] = nullptr;
+  json["jerk_real_motion_p999_deg_s3"] = kRealJerk_deg_s3;
   return json;
 }
 
@@ -182,7 +213,7 @@ Json timings_json(const BakeTimings& timings, double clip_duration_s) {
 
 std::string report_json(const std::string& character, const Character& loaded, const BakeSettings& settings,
                         const BakeOutcome& outcome, const ReducedClip& reduced,
-                        const Diagnostics& diagnostics) {
+                        const Diagnostics& diagnostics, const std::vector<Vec3>& root_curve) {
   Json json;
   json["format"] = 1;
   json["generator"] = generator();
@@ -194,6 +225,7 @@ std::string report_json(const std::string& character, const Character& loaded, c
   json["limits"] = limits_json(outcome);
   json["simulation"] = simulation_json(outcome.simulation.figures);
   json["clip"] = clip_json(settings, outcome, reduced);
+  if (!root_curve.empty()) json["clip"]["root_curve_m"] = root_curve_json(root_curve);
   json["timings_s"] = timings_json(outcome.timings_s, outcome.clip.duration_s());
   json["warnings"] = Json::array();
   for (const Warning& warning : diagnostics.warnings())
@@ -215,6 +247,18 @@ double largest_jerk_deg_s3(const Clip& clip) {
       largest = std::max(largest, jerk.norm() * clip.fps * clip.fps);
     }
   return degrees(largest);
+}
+
+std::string_view name(RootMotion motion) {
+  switch (motion) {
+    case RootMotion::root:
+      return "root";
+    case RootMotion::in_place:
+      return "in-place";
+    case RootMotion::hips:
+      break;
+  }
+  return "hips";
 }
 
 std::string_view name(Limits limits) {

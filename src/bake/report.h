@@ -20,14 +20,19 @@ namespace ukemi {
 ///    the blow's share included. Both null for a still start.
 /// 3. clip.jerk_max_deg_s3 is the largest second difference of a node's local angular velocity between
 /// frames.
-/// 4. timings_s.realtime_factor is the clip's length over the total.
+/// 4. Times of impact and clip.marks are in the clip (the lead counts), those of simulation after the impact.
+/// 5. clip.root_curve_m: [x, z] of the pelvis since the first frame, one per frame, world metres; null with
+/// the motion on the hips.
+/// 6. timings_s.realtime_factor is the clip's length over the total.
 std::string report_json(const std::string& character, const Character& loaded, const BakeSettings& settings,
                         const BakeOutcome& outcome, const ReducedClip& reduced,
-                        const Diagnostics& diagnostics);
+                        const Diagnostics& diagnostics, const std::vector<Vec3>& root_curve = {});
 
 /// Largest jerk of any node's local rotation, degrees / s^3; 0 for clips of fewer than four frames.
 double largest_jerk_deg_s3(const Clip& clip);
 
+/// "hips", "root", "in-place".
+std::string_view name(RootMotion motion);
 std::string_view name(Limits limits);
 std::string_view name(Active active);
 /// "adaptive" or "fixed:480".

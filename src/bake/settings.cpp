@@ -392,6 +392,42 @@ Settings clip_settings() {
       number<S>(
           "fps", "N", Range{1.0, 1000.0}, "frames per second",
           [](auto& s) -> auto& { return s.simulation.fps; }),
+      number<S>(
+          "lead", "S", Range{0.0, 60.0},
+          "start of the clip before the impact: the start clip, or the pose held",
+          [](auto& s) -> auto& { return s.lead_s; }),
+      with_unset(number<S>(
+                     "recover", "S", Range{0.0, 60.0, true},
+                     "blend from the end of the simulation back to the start, in this time",
+                     [](auto& s) -> auto& { return s.recover_s; }),
+                 "none"),
+      choice<S, RecoverTo>(
+          "to", {{"rest", RecoverTo::rest}, {"clip", RecoverTo::clip}},
+          "recover: to the start pose, or to what the start clip plays by then",
+          [](auto& s) -> auto& { return s.recover_to; }),
+      choice<S, RootMotion>(
+          "root-motion",
+          {{"hips", RootMotion::hips}, {"root", RootMotion::root}, {"in-place", RootMotion::in_place}},
+          "motion over the ground: on the hips, on a root joint above them (of a glTF; added where there is "
+          "none), or left out (the report keeps it)",
+          [](auto& s) -> auto& { return s.root_motion; }),
+      on_off<S>(
+          "align", "turn and move the clip so that it starts at the origin, facing +z",
+          [](auto& s) -> auto& { return s.align; }),
+      on_off<S>(
+          "additive",
+          "glTF clip as the difference from its first frame: rotation start^-1 * value, translation value - "
+          "start",
+          [](auto& s) -> auto& { return s.additive; }),
+      choice<S, bool>(
+          "extra-bones", {{"hold", false}, {"clip", true}},
+          "bones of no segment (fingers, face): hold their pose at the impact, or play the start clip on",
+          [](auto& s) -> auto& { return s.extra_bones_play; }),
+      with_unset(number<S>(
+                     "smooth", "HZ", Range{0.5, 500.0},
+                     "zero-phase low-pass after the impact, -6 dB at HZ (below half of --fps)",
+                     [](auto& s) -> auto& { return s.smooth_hz; }),
+                 "off"),
       choice<S, bool>(
           "keys", {{"reduced", true}, {"all", false}}, "keys of a glTF clip",
           [](auto& s) -> auto& { return s.keys.enabled; }),
@@ -404,8 +440,15 @@ Settings clip_settings() {
 Settings out_settings() {
   using S = BakeSettings;
   return {
+      choice<S, bool>(
+          "rotation-type", {{"float", false}, {"int16", true}},
+          "numbers of a glTF clip's rotations; int16 halves them, within the same error",
+          [](auto& s) -> auto& { return s.keys.short_rotations; }),
       on_off<S>(
           "clip-only", "glTF without the mesh", [](auto& s) -> auto& { return s.clip_only; }),
+      on_off<S>(
+          "append", "add the clip to those of a glTF output that exists",
+          [](auto& s) -> auto& { return s.append; }),
       with_unset(
           choice<S, std::optional<double>>(
               "bvh-unit", {{"cm", 0.01}, {"m", 1.0}}, "length unit of a BVH that does not come from a BVH",

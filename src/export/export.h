@@ -17,18 +17,23 @@ namespace ukemi {
 struct KeyReduction {
   bool enabled = true;
   double tolerance_m = 0.0005;  // largest world-position error of any joint
+  /// Rotations rounded to what normalised 16-bit integers hold; keys are kept until the whole error is within
+  /// the tolerance, or all are.
+  bool short_rotations = false;
 };
 
 /// The clip as tracks: only quantities that move, linear interpolation, the shorter arc between rotations;
-/// what rests, but not in the rest pose, has a single key. `error_m` is the largest distance of any node from
-/// the unreduced clip, metres, at every frame; a node without children stands for a point as far out as its
-/// bone is long (1 to 20 cm), so that hands and heads keep their turn.
+/// the first frame, the last and that of the mark "impact" as they are; what rests, but not in the rest pose,
+/// has a single key. `error_m` is the largest distance of any node from the unreduced clip, metres, at every
+/// frame; a node without children stands for a point as far out as its bone is long (1 to 20 cm), so that
+/// hands and heads keep their turn.
 struct ReducedClip {
   std::string name;
   std::vector<Track> tracks;
   std::size_t keys = 0;
   double error_m = 0.0;
   std::vector<Mark> marks;
+  bool short_rotations = false;
 };
 ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Similarity& world_from_file,
                         const KeyReduction& settings);

@@ -21,6 +21,8 @@ constexpr double kTipMinM = 0.01;
 // Of 0.3 to 1, tried on falls and flinches, all leave as many keys within 2 %.
 constexpr double kShare = 0.5;
 constexpr int kRemovalPasses = 3;
+// Rounded rotations may break the bound: it is tightened, and at last every key is kept.
+constexpr int kAttempts = 5;
 
 KeyValue value_of(const LocalTransform& local, TrackPath path) {
   if (path == TrackPath::rotation) return local.rotation.normalized().coeffs();
@@ -332,6 +334,16 @@ Track track_of(const KeyCurve& curve, double fps) {
   return track;
 }
 
+/// Rotations as glTF's normalised signed shorts hold them.
+void round_rotations(std::vector<KeyCurve>& curves) {
+  for (KeyCurve& curve : curves) {
+    if (curve.path != TrackPath::rotation) continue;
+    for (KeyValue& value : curve.values) value = (value * 32767.0).array().round().matrix() / 32767.0;
+    interpolate(curve, 0, static_cast<int>(curve.keys.size()) - 1);
+    if (curve.is_single()) std::fill(curve.reduced.begin(), curve.reduced.end(), curve.values.front());
+  }
+}
+
 /// A clip in which nothing moves still lasts as long as it does: its first curve gets a key at the end.
 void keep_duration(std::vector<KeyCurve>& curves, const Skeleton& skeleton, const Clip& clip) {
   const int last = static_cast<int>(clip.frames.size()) - 1;
@@ -350,13 +362,21 @@ void keep_duration(std::vector<KeyCurve>& curves, const Skeleton& skeleton, cons
 
 ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Similarity& world_from_file,
                         const KeyReduction& settings) {
-  ReducedClip result{clip.name, {}, 0, 0.0, clip.marks};
+  ReducedClip result{clip.name, {}, 0, 0.0, clip.marks, settings.short_rotations};
   if (clip.frames.empty()) return result;
   const Rig rig(skeleton, clip, world_from_file);
-  std::vector<KeyCurve> curves = curves_of(skeleton, clip, rig);
-  Reduction reduction(skeleton, clip, rig, curves);
-  if (settings.enabled) reduction.run(settings.tolerance_m);
-  result.error_m = reduction.error_m();
+  const std::vector<KeyCurve> all = curves_of(skeleton, clip, rig);
+  std::vector<KeyCurve> curves;
+  double bound_m = settings.tolerance_m;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    curves = all;
+    Reduction reduction(skeleton, clip, rig, curves);
+    if (settings.enabled && bound_m > 0.0) reduction.run(bound_m);
+    if (settings.short_rotations) round_rotations(curves);
+    result.error_m = reduction.error_m();
+    if (!settings.enabled || result.error_m <= settings.tolerance_m || bound_m <= 0.0) break;
+    bound_m = attempt + 2 < kAttempts ? bound_m - 1.1 * (result.error_m - settings.tolerance_m) : 0.0;
+  }
   keep_duration(curves, skeleton, clip);
   for (const KeyCurve& curve : curves) {
     result.tracks.push_back(track_of(curve, clip.fps));

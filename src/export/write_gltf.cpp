@@ -20,6 +20,7 @@ using Json = nlohmann::ordered_json;
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr int kFloat = 5126;
+constexpr int kShort = 5122;
 constexpr int kUnsignedShort = 5123;
 constexpr int kArrayBuffer = 34962;
 constexpr std::size_t kMaxImageBytes = 512u << 20;
@@ -351,21 +352,38 @@ TimePool pool_times(const std::vector<Track>& tracks) {
   return pool;
 }
 
-/// Unit quaternions and vectors as floats, behind each other.
-std::vector<float> pool_values(const std::vector<Track>& tracks) {
-  std::vector<float> values;
-  for (const Track& track : tracks) {
+/// The keys' values of all tracks behind each other.
+struct ValuePool {
+  Bytes bytes;
+  std::vector<std::size_t> offsets;  // of each track
+
+  template <typename T>
+  void put(T value) {
+    const auto* first = reinterpret_cast<const std::uint8_t*>(&value);
+    bytes.insert(bytes.end(), first, first + sizeof(T));
+  }
+};
+
+/// Vectors as floats; rotations as unit quaternions of floats, or of normalised shorts.
+ValuePool pool_values(const ReducedClip& clip) {
+  ValuePool pool;
+  for (const Track& track : clip.tracks) {
+    pool.offsets.push_back(pool.bytes.size());
     if (track.path != TrackPath::rotation) {
-      const std::vector<float> floats = as_floats(track.values);
-      values.insert(values.end(), floats.begin(), floats.end());
+      for (const double value : track.values) pool.put(static_cast<float>(value));
       continue;
     }
     for (std::size_t i = 0; i + 4 <= track.values.size(); i += 4) {
-      const Eigen::Vector4d q = Eigen::Map<const Eigen::Vector4d>(track.values.data() + i).normalized();
-      for (const double part : q) values.push_back(static_cast<float>(part));
+      const Eigen::Vector4d q = Eigen::Map<const Eigen::Vector4d>(track.values.data() + i);
+      for (const double part : q) {
+        if (clip.short_rotations)
+          pool.put(static_cast<std::int16_t>(std::lround(std::clamp(part, -1.0, 1.0) * 32767.0)));
+        else
+          pool.put(static_cast<float>(part / q.norm()));
+      }
     }
   }
-  return values;
+  return pool;
 }
 
 std::vector<std::size_t> add_time_accessors(Edit& edit, const TimePool& pool) {
@@ -396,16 +414,17 @@ const char* path_name(TrackPath path) {
 void add_animation(Edit& edit, const ReducedClip& clip, const std::string& extras_json) {
   const TimePool pool = pool_times(clip.tracks);
   const std::vector<std::size_t> inputs = add_time_accessors(edit, pool);
-  const std::size_t view = add_view(edit, pool_values(clip.tracks));
+  const ValuePool values = pool_values(clip);
+  const std::size_t view = add_view(edit, values.bytes);
   Json channels = Json::array();
   Json samplers = Json::array();
-  std::size_t offset = 0;
   for (std::size_t i = 0; i < clip.tracks.size(); ++i) {
     const Track& track = clip.tracks[i];
     const bool rotation = track.path == TrackPath::rotation;
-    const std::size_t output =
-        add_accessor(edit, view, offset, kFloat, track.times.size(), rotation ? "VEC4" : "VEC3");
-    offset += track.values.size() * sizeof(float);
+    const bool is_short = rotation && clip.short_rotations;
+    const std::size_t output = add_accessor(edit, view, values.offsets[i], is_short ? kShort : kFloat,
+                                            track.times.size(), rotation ? "VEC4" : "VEC3");
+    if (is_short) edit.json["accessors"][output]["normalized"] = true;
     const Json sampler = {
         {"input", inputs[pool.of_track[i]]}, {"interpolation", "LINEAR"}, {"output", output}};
     channels.push_back({{"sampler", append(samplers, sampler)},

@@ -1,0 +1,252 @@
+#include "bake/clip_timing.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bake/ground_motion.h"
+#include "bake/smooth.h"
+#include "export/additive.h"
+#include "load/load.h"
+
+namespace ukemi {
+namespace {
+
+const Character& mannequin() {
+  static const Character character = [] {
+    Diagnostics diagnostics;
+    auto loaded =
+        load_character(std::string(UKEMI_ASSETS_FOLDER) + "/characters/mannequin.glb", {}, diagnostics);
+    EXPECT_TRUE(loaded);
+    return std::move(*loaded);
+  }();
+  return character;
+}
+
+/// A blow to the head, half a second of it.
+BakeSettings flinch() {
+  BakeSettings settings;
+  settings.hit = "head";
+  settings.preset = "punch";
+  settings.simulation.duration_s = 0.5;
+  return settings;
+}
+
+BakeOutcome baked(const BakeSettings& settings) {
+  Diagnostics diagnostics;
+  auto outcome = bake(mannequin(), settings, diagnostics);
+  EXPECT_TRUE(outcome) << outcome.error().message();
+  return std::move(*outcome);
+}
+
+const BakeOutcome& plain() {
+  static const BakeOutcome outcome = baked(flinch());
+  return outcome;
+}
+
+double largest_turn_deg(const Pose& a, const Pose& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    largest = std::max(largest, degrees(angle_between(a[i].rotation, b[i].rotation)));
+  return largest;
+}
+
+double lowest_joint_m(const BakeOutcome& outcome, const Pose& pose) {
+  double low = 1e9;
+  for (const Affine& node : world_transforms(mannequin().skeleton, pose))
+    low = std::min(low, (outcome.humanoid.world_from_file * Vec3(node.translation())).y());
+  return low;
+}
+
+Vec3 pelvis_at(const BakeOutcome& outcome, const Skeleton& skeleton, const Pose& pose) {
+  const Affine hips = world_transforms(skeleton, pose)[static_cast<std::size_t>(outcome.humanoid.root)];
+  return outcome.humanoid.world_from_file * Vec3(hips.translation());
+}
+
+TEST(Lead, HoldsTheStartPoseAndLeavesTheImpactFrameAsItIs) {
+  BakeSettings settings = flinch();
+  settings.lead_s = 0.25;
+  const BakeOutcome outcome = baked(settings);
+  ASSERT_EQ(outcome.clip.frames.size(), plain().clip.frames.size() + 15);
+  ASSERT_EQ(outcome.simulation.trajectory.frames.size(), outcome.clip.frames.size());
+  EXPECT_DOUBLE_EQ(outcome.impact_s, 0.25);
+  for (std::size_t f = 0; f < outcome.clip.frames.size(); ++f) {
+    const Pose& expected = f < 15 ? outcome.start.pose : plain().clip.frames[f - 15];
+    EXPECT_LT(largest_turn_deg(outcome.clip.frames[f], expected), 1e-9) << f;
+  }
+  for (const Mark& mark : outcome.clip.marks) {
+    if (mark.name == "start") {
+      EXPECT_EQ(mark.time_s, 0.0);
+    } else if (mark.name == "impact") {
+      EXPECT_DOUBLE_EQ(mark.time_s, 0.25);
+    }
+  }
+}
+
+TEST(Recovery, EndsInTheStartPoseOnTheFloorWithoutAPop) {
+  BakeSettings settings = flinch();
+  settings.recover_s = 0.5;
+  const BakeOutcome outcome = baked(settings);
+  const auto& frames = outcome.clip.frames;
+  const std::size_t cut = plain().clip.frames.size() - 1;
+  ASSERT_EQ(frames.size(), cut + 1 + 30);
+  EXPECT_LT(largest_turn_deg(frames[cut], plain().clip.frames[cut]), 1e-9) << "the simulation stays";
+  for (int i = 0; i < mannequin().skeleton.size(); ++i) {
+    if (i == outcome.humanoid.root) continue;
+    EXPECT_LT(degrees(angle_between(frames.back()[i].rotation, outcome.start.pose[i].rotation)), 1e-6);
+  }
+  EXPECT_LT(largest_turn_deg(frames.back(), frames[frames.size() - 2]), 0.2) << "arrives at rest";
+  double before = 0.0;
+  for (std::size_t f = 1; f <= cut; ++f)
+    before = std::max(before, largest_turn_deg(frames[f - 1], frames[f]));
+  for (std::size_t f = cut + 1; f < frames.size(); ++f) {
+    EXPECT_LT(largest_turn_deg(frames[f - 1], frames[f]), 1.5 * before) << f;
+    EXPECT_GT(lowest_joint_m(outcome, frames[f]), -0.005) << f;
+  }
+}
+
+TEST(Recovery, OfWhoLiesGetsUpWhereHeIsAndStaysAboveTheFloor) {
+  BakeSettings settings;
+  settings.recover_s = 1.5;
+  const BakeOutcome outcome = baked(settings);
+  const auto& frames = outcome.clip.frames;
+  const std::size_t cut = frames.size() - 1 - 90;
+  const Vec3 lying = pelvis_at(outcome, mannequin().skeleton, frames[cut]);
+  const Vec3 standing = pelvis_at(outcome, mannequin().skeleton, frames.back());
+  EXPECT_LT(lying.y(), 0.5);
+  EXPECT_NEAR(standing.y(), pelvis_at(outcome, mannequin().skeleton, outcome.start.pose).y(), 0.02);
+  EXPECT_LT(Vec2(standing.x() - lying.x(), standing.z() - lying.z()).norm(), 0.2);
+  for (std::size_t f = cut; f < frames.size(); ++f) EXPECT_GT(lowest_joint_m(outcome, frames[f]), -0.01) << f;
+}
+
+TEST(Recovery, ToAClipNeedsOne) {
+  BakeSettings settings = flinch();
+  settings.recover_s = 0.5;
+  settings.recover_to = RecoverTo::clip;
+  Diagnostics diagnostics;
+  const auto outcome = bake(mannequin(), settings, diagnostics);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().what, "--to clip needs a start clip to go back to");
+}
+
+TEST(Facing, OfLyingBodiesIsTowardsFeetOnTheBackAndHeadOnTheBelly) {
+  const auto turned = [](double angle) { return Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())); };
+  EXPECT_NEAR(facing(Quat::Identity()), 0.0, 1e-12);
+  EXPECT_NEAR(facing(turned(0.45 * kPi)), 0.0, 1e-12) << "falls back, the feet ahead";
+  EXPECT_NEAR(facing(turned(-0.45 * kPi)), 0.0, 1e-12) << "falls on the face, the head ahead";
+  const Quat yaw(Eigen::AngleAxisd(0.7, Vec3::UnitY()));
+  EXPECT_NEAR(facing(yaw * turned(0.4)), 0.7, 1e-12);
+}
+
+TEST(RootMotion, OnARootJointLeavesEveryJointInTheWorld) {
+  BakeSettings settings = flinch();
+  settings.root_motion = RootMotion::root;
+  const auto exported = exported_clip(mannequin(), settings, plain());
+  ASSERT_TRUE(exported) << exported.error().message();
+  ASSERT_TRUE(exported->with_root);
+  const Skeleton& skeleton = exported->with_root->skeleton;
+  ASSERT_EQ(exported->root_joint, mannequin().skeleton.size());
+  EXPECT_EQ(skeleton.nodes[exported->humanoid.root].parent, exported->root_joint);
+  for (std::size_t f = 0; f < exported->clip.frames.size(); f += 10) {
+    const auto world = world_transforms(skeleton, exported->clip.frames[f]);
+    const auto whole = world_transforms(mannequin().skeleton, plain().clip.frames[f]);
+    for (std::size_t i = 0; i < whole.size(); ++i)
+      EXPECT_LT((world[i].translation() - whole[i].translation()).norm(), 1e-9);
+    const Vec3 root = world[static_cast<std::size_t>(exported->root_joint)].translation();
+    EXPECT_NEAR(root.x(), exported->root_curve[f].x(), 1e-9);
+    EXPECT_EQ(root.y(), 0.0);
+  }
+  EXPECT_GT(exported->root_curve.back().norm(), 0.01);
+}
+
+TEST(RootMotion, InPlaceKeepsThePelvisOverItsStart) {
+  BakeSettings settings = flinch();
+  settings.root_motion = RootMotion::in_place;
+  const auto exported = exported_clip(mannequin(), settings, plain());
+  ASSERT_TRUE(exported);
+  const auto pelvis = [&](const Pose& pose) {
+    return segments_of(mannequin().skeleton, plain().humanoid, pose)[index(Segment::pelvis)].translation;
+  };
+  const Vec3 start = pelvis(exported->clip.frames.front());
+  for (const Pose& pose : exported->clip.frames) {
+    EXPECT_NEAR(pelvis(pose).x(), start.x(), 1e-9);
+    EXPECT_NEAR(pelvis(pose).z(), start.z(), 1e-9);
+  }
+}
+
+TEST(Align, StartsAtTheOriginFacingForward) {
+  BakeSettings settings = flinch();
+  settings.align = true;
+  BakeOutcome turned = plain();
+  const GroundMove away{1.0, Vec3::Zero(), Vec3(3.0, 0.0, -2.0)};
+  for (Pose& pose : turned.clip.frames) pose = away.moved(mannequin().skeleton, turned.humanoid, pose);
+  for (Rigid& segment : turned.start.segments) segment = away * segment;
+  const auto exported = exported_clip(mannequin(), settings, turned);
+  ASSERT_TRUE(exported);
+  const Rigid pelvis = canonical_segments_of(mannequin().skeleton, turned.humanoid,
+                                             exported->clip.frames.front())[index(Segment::pelvis)];
+  EXPECT_NEAR(facing(pelvis.rotation), -kPi / 2, 0.01) << "+z";
+  EXPECT_NEAR(pelvis.translation.x(), 0.0, 1e-6);
+  EXPECT_NEAR(pelvis.translation.z(), 0.0, 1e-6);
+}
+
+TEST(Additive, DeltasOnTopOfTheStartAreTheClip) {
+  const Clip& clip = plain().clip;
+  const ReducedClip whole =
+      reduce_keys(mannequin().skeleton, clip, plain().humanoid.world_from_file, {false, 0.0});
+  const ReducedClip delta = additive(whole, clip.frames.front());
+  ASSERT_FALSE(delta.tracks.empty());
+  EXPECT_LE(delta.tracks.size(), whole.tracks.size());
+  for (const Track& track : delta.tracks) {
+    const LocalTransform& start = clip.frames.front()[track.node];
+    for (std::size_t k = 0; k < track.times.size(); ++k) {
+      const auto frame = static_cast<std::size_t>(std::lround(track.times[k] * clip.fps));
+      const LocalTransform& wanted = clip.frames[frame][track.node];
+      if (track.path == TrackPath::rotation) {
+        const double* v = track.values.data() + 4 * k;
+        EXPECT_LT(angle_between(start.rotation * Quat(v[3], v[0], v[1], v[2]), wanted.rotation), 1e-7);
+      } else if (track.path == TrackPath::translation) {
+        const Vec3 v = Eigen::Map<const Vec3>(track.values.data() + 3 * k);
+        EXPECT_LT((start.translation + v - wanted.translation).norm(), 1e-9);
+      }
+    }
+  }
+}
+
+/// One node that swings, slow or fast.
+Clip swinging(double hz) {
+  Clip clip{"swing", 60.0, {}, {}};
+  for (int f = 0; f <= 240; ++f) {
+    Pose pose(1);
+    pose[0].translation.x() = std::sin(2 * kPi * hz * f / clip.fps);
+    pose[0].rotation = exp_rotation(Vec3(0.2 * pose[0].translation.x(), 0, 0));
+    clip.frames.push_back(pose);
+  }
+  return clip;
+}
+
+TEST(Smooth, KeepsSlowMotionWithoutLagAndHalvesTheCutOff) {
+  Clip slow = swinging(0.5);
+  smooth(slow, 10.0);
+  const Clip expected = swinging(0.5);
+  for (std::size_t f = 0; f < slow.frames.size(); ++f)
+    EXPECT_NEAR(slow.frames[f][0].translation.x(), expected.frames[f][0].translation.x(), 1e-4);
+  Clip fast = swinging(10.0);
+  smooth(fast, 10.0);
+  double largest = 0.0;
+  for (std::size_t f = 100; f < 140; ++f)
+    largest = std::max(largest, std::abs(fast.frames[f][0].translation.x()));
+  EXPECT_NEAR(largest, 0.5 * std::sin(2 * kPi / 5), 0.03) << "-6 dB of the largest sample of six a period";
+}
+
+TEST(Smooth, NeverMovesTheFirstFrame) {
+  Clip clip = swinging(7.0);
+  for (Pose& pose : clip.frames) pose[0].translation.x() += 1.0;
+  const Clip before = clip;
+  smooth(clip, 3.0);
+  EXPECT_EQ(clip.frames.front()[0].translation, before.frames.front()[0].translation);
+  EXPECT_LT((clip.frames[1][0].translation - before.frames[0][0].translation).norm(), 0.7);
+}
+
+}  // namespace
+}  // namespace ukemi
