@@ -236,7 +236,7 @@ TEST(Smooth, KeepsSlowMotionWithoutLagAndHalvesTheCutOff) {
   double largest = 0.0;
   for (std::size_t f = 100; f < 140; ++f)
     largest = std::max(largest, std::abs(fast.frames[f][0].translation.x()));
-  EXPECT_NEAR(largest, 0.5 * std::sin(2 * kPi / 5), 0.03) << "-6 dB of the largest sample of six a period";
+  EXPECT_NEAR(largest, 0.5 * std::sin(kPi / 3), 0.005) << "-6 dB; six samples a period";
 }
 
 TEST(Smooth, NeverMovesTheFirstFrame) {
