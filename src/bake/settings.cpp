@@ -446,9 +446,6 @@ Settings out_settings() {
           [](auto& s) -> auto& { return s.keys.short_rotations; }),
       on_off<S>(
           "clip-only", "glTF without the mesh", [](auto& s) -> auto& { return s.clip_only; }),
-      on_off<S>(
-          "append", "add the clip to those of a glTF output that exists",
-          [](auto& s) -> auto& { return s.append; }),
       with_unset(
           choice<S, std::optional<double>>(
               "bvh-unit", {{"cm", 0.01}, {"m", 1.0}}, "length unit of a BVH that does not come from a BVH",

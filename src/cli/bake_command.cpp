@@ -27,6 +27,7 @@ void declare_out(Options& options, BakeRequest& request) {
   BakeSettings& settings = request.settings;
   options.group("out");
   options.paths("-o,--output", settings.outputs, "the clip, as .glb, .gltf or .bvh");
+  options.flag("--append", settings.append, "add the clip to those of a glTF output that exists");
   options.path("--sheet", settings.sheet, "contact sheet, as .png");
   options.path("--preview", settings.preview, "moving picture, as .webp (640x360, 30 a second)");
   options.custom(
