@@ -35,8 +35,8 @@ struct ClipFacts {
 };
 
 /// The extras of a baked animation: {"ukemi": {"format": 1, "generator": ..., "segments": {SEGMENT: {"node",
-/// "segment_from_node": [x, y, z, w]}}, "marks": [{"name", "time_s"}], "root_motion", "additive"}}; null for a
-/// fused segment. An additive clip has no segments.
+/// "segment_from_node": [x, y, z, w]}}, "marks": [{"name", "time_s"}], "root_motion", "additive"}}; null for
+/// a fused segment. An additive clip has no segments.
 std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames,
                              const std::vector<Mark>& marks = {}, const ClipFacts& facts = {});
 
