@@ -110,8 +110,8 @@ Result<std::vector<std::uint8_t>> bvh_bytes(const Character& character, const Ba
 std::string extras_of(const Character& character, const BakeSettings& settings, const BakeOutcome& outcome) {
   const SegmentFrames frames =
       segment_frames(character.skeleton, outcome.humanoid, outcome.start.pose, outcome.start.segments);
-  return animation_extras(character.skeleton, frames,
-                          {outcome.clip.marks, std::string(name(settings.root_motion)), settings.additive});
+  return animation_extras(character.skeleton, frames, outcome.clip.marks,
+                          {std::string(name(settings.root_motion)), settings.additive});
 }
 
 Result<std::vector<std::uint8_t>> gltf_bytes(const fs::path& path, const Character& character,

@@ -71,10 +71,10 @@ struct BakeSettings {
   std::vector<std::filesystem::path> outputs;
   bool clip_only = false;  // glTF without the mesh
   std::optional<double> bvh_metres_per_unit;
-  std::filesystem::path sheet;    // empty: none
-  std::filesystem::path preview;  // moving; empty: none
+  std::filesystem::path sheet;         // empty: none
+  std::filesystem::path preview;       // moving; empty: none
   ThemeKind theme = ThemeKind::light;  // of the pictures
-  std::filesystem::path report;  // empty: none
+  std::filesystem::path report;        // empty: none
 };
 
 /// Wall-clock seconds.

@@ -90,7 +90,7 @@ class BatchWorker {
     for (const OutputFile& file : baked->files) note(record, file.path, file.bytes);
     if (!settings.report.empty()) {
       const std::string report = report_json(named.written, (*loaded)->character, reaction.settings,
-                                             baked->outcome, baked->reduced, diagnostics);
+                                             baked->outcome, baked->reduced, diagnostics, baked->root_curve);
       if (write)
         if (const Status status = write_file(settings.report, report); !status) return status;
       note(record, settings.report, {reinterpret_cast<const std::uint8_t*>(report.data()), report.size()});

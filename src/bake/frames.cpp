@@ -65,7 +65,8 @@ PerSegment<Quat> rotations_of(const Skeleton& skeleton, const SegmentFrames& fra
   return rotations;
 }
 
-std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames, const ClipFacts& facts) {
+std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames,
+                             const std::vector<Mark>& marks, const ClipFacts& facts) {
   Json segments = Json::object();
   for (int i = 0; i < kSegmentCount; ++i) {
     const Quat& q = frames.segment_from_node[i];
@@ -74,11 +75,10 @@ std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& fram
     segment = {{"node", skeleton.label(frames.node[i])}, {"segment_from_node", {q.x(), q.y(), q.z(), q.w()}}};
   }
   Json ours = {{"format", 1}, {"generator", generator()}};
-  ours["marks"] = Json::object();
-  for (const Mark& mark : facts.marks) ours["marks"][mark.name] = mark.time_s;
+  if (!facts.additive) ours["segments"] = std::move(segments);
+  for (const Mark& mark : marks) ours["marks"].push_back({{"name", mark.name}, {"time_s", mark.time_s}});
   ours["root_motion"] = facts.root_motion;
   ours["additive"] = facts.additive;
-  if (!facts.additive) ours["segments"] = std::move(segments);
   const Json json = {{"ukemi", std::move(ours)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -98,11 +98,12 @@ std::optional<SegmentFrames> frames_in_extras(const Skeleton& skeleton, std::str
 std::vector<Mark> marks_in_extras(std::string_view extras_json) {
   const Json json = Json::parse(extras_json, nullptr, false);
   const Json::json_pointer place("/ukemi/marks");
-  if (!json.is_object() || !json.contains(place) || !json[place].is_object()) return {};
+  if (!json.is_object() || !json.contains(place) || !json[place].is_array()) return {};
   std::vector<Mark> marks;
-  for (const auto& [name, time_s] : json[place].items()) {
-    if (!time_s.is_number()) return {};
-    marks.push_back({name, time_s.get<double>()});
+  for (const Json& mark : json[place]) {
+    if (!mark.is_object() || !mark.contains("name") || !mark.contains("time_s")) return {};
+    if (!mark["name"].is_string() || !mark["time_s"].is_number()) return {};
+    marks.push_back({mark["name"].get<std::string>(), mark["time_s"].get<double>()});
   }
   return marks;
 }

@@ -28,17 +28,17 @@ SegmentFrames segment_frames(const Skeleton& skeleton, const Humanoid& humanoid,
 /// parent.
 PerSegment<Quat> rotations_of(const Skeleton& skeleton, const SegmentFrames& frames, const Pose& pose);
 
-/// What is said of a baked animation beside its frames.
+/// What is said of a baked animation beside its frames and marks.
 struct ClipFacts {
-  std::vector<Mark> marks;
   std::string root_motion = "hips";
   bool additive = false;
 };
 
-/// The extras of a baked animation: {"ukemi": {"format": 1, "generator": ..., "marks": {NAME: seconds},
-/// "root_motion", "additive", "segments": {SEGMENT: {"node", "segment_from_node": [x, y, z, w]}}}}; null for
+/// The extras of a baked animation: {"ukemi": {"format": 1, "generator": ..., "segments": {SEGMENT: {"node",
+/// "segment_from_node": [x, y, z, w]}}, "marks": [{"name", "time_s"}], "root_motion", "additive"}}; null for
 /// a fused segment. An additive clip has no segments.
-std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames, const ClipFacts& facts);
+std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames,
+                             const std::vector<Mark>& marks = {}, const ClipFacts& facts = {});
 
 /// The frames in an animation's extras; nothing where there are none or they do not fit the skeleton.
 std::optional<SegmentFrames> frames_in_extras(const Skeleton& skeleton, std::string_view extras_json);

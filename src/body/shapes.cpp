@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "humanoid/skin.h"
+
 namespace ukemi {
 namespace {
 
@@ -199,28 +201,12 @@ Shape foot(const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
   return shape;
 }
 
-/// Segment that moves each node: that of its chain, else of its parent; the pelvis for nodes above.
-std::vector<Segment> segment_of_nodes(const Skeleton& skeleton, const Humanoid& humanoid) {
-  std::vector<Segment> owner(skeleton.nodes.size(), Segment::pelvis);
-  std::vector<int> mapped(skeleton.nodes.size(), -1);
-  for (int s = 0; s < kSegmentCount; ++s)
-    for (const int node : humanoid.segments[s].chain) mapped[node] = s;
-  for (const int node : skeleton.order) {
-    const int parent = skeleton.nodes[node].parent;
-    if (mapped[node] >= 0)
-      owner[node] = segment_at(mapped[node]);
-    else if (parent >= 0)
-      owner[node] = owner[parent];
-  }
-  return owner;
-}
-
 }  // namespace
 
 PerSegment<std::vector<Vec3>> skin_of_segments(const Character& character, const Humanoid& humanoid,
                                                const Pose& pose, const BodyPose& segments) {
   PerSegment<std::vector<Vec3>> result;
-  const std::vector<Segment> owner = segment_of_nodes(character.skeleton, humanoid);
+  const std::vector<Segment> owner = segments_of_nodes(character.skeleton, humanoid);
   const std::vector<Affine> world = world_transforms(character.skeleton, pose);
   PerSegment<Rigid> segment_from_world;
   for (int s = 0; s < kSegmentCount; ++s) segment_from_world[s] = segments[s].inverse();

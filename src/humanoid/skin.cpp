@@ -1,6 +1,7 @@
 #include "humanoid/skin.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ukemi {
 namespace {
@@ -18,6 +19,43 @@ void add(SkinExtent& extent, double value) {
   extent.min = extent.found ? std::min(extent.min, value) : value;
   extent.max = extent.found ? std::max(extent.max, value) : value;
   extent.found = true;
+}
+
+/// Where the vertices of a part are, and the nodes that carry them.
+struct PosedPart {
+  std::vector<Vec3> places;
+  std::vector<int> nodes;
+};
+
+PosedPart posed(const Character& character, const MeshPart& part,
+                const std::vector<Affine>& world_from_node) {
+  PosedPart result;
+  if (part.node < 0) return result;
+  const bool rigid = part.skin < 0 || part.joints.empty();
+  const std::vector<Affine> matrices =
+      rigid ? std::vector<Affine>() : joint_matrices(character.skins[part.skin], world_from_node);
+  for (std::size_t v = 0; v < part.positions.size(); ++v) {
+    const Vec3 p = part.positions[v].cast<double>();
+    if (rigid) {
+      result.places.push_back(world_from_node[part.node] * p);
+      result.nodes.push_back(part.node);
+      continue;
+    }
+    const auto& weights = part.weights[v];
+    const auto strongest = std::max_element(weights.begin(), weights.end()) - weights.begin();
+    Vec3 place = Vec3::Zero();
+    for (int k = 0; k < 4; ++k)
+      if (weights[k] > 0.0f) place += weights[k] * (matrices[part.joints[v][k]] * p);
+    result.places.push_back(place);
+    result.nodes.push_back(character.skins[part.skin].joints[part.joints[v][strongest]]);
+  }
+  return result;
+}
+
+void add_edge(const Vec3& a, const Vec3& b, double spacing, std::vector<Vec3>& points) {
+  constexpr double kMost = 100.0;
+  const double count = std::clamp(std::ceil((b - a).norm() / spacing), 1.0, kMost);
+  for (double i = 0.0; i < count; ++i) points.push_back(a + (i / count) * (b - a));
 }
 
 }  // namespace
@@ -47,6 +85,36 @@ SkinExtent skin_extent(const Character& character, const std::vector<Affine>& wo
     }
   }
   return extent;
+}
+
+std::vector<Vec3> surface_points(const Character& character, const std::vector<Affine>& world_from_node,
+                                 double spacing, const std::function<bool(int node)>& counts) {
+  std::vector<Vec3> points;
+  for (const MeshPart& part : character.parts) {
+    const PosedPart skin = posed(character, part, world_from_node);
+    for (std::size_t i = 0; !skin.places.empty() && i + 2 < part.indices.size(); i += 3)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = part.indices[i + k], b = part.indices[i + (k + 1) % 3];
+        if (counts(skin.nodes[a]) && counts(skin.nodes[b]))
+          add_edge(skin.places[a], skin.places[b], spacing, points);
+      }
+  }
+  return points;
+}
+
+std::vector<Segment> segments_of_nodes(const Skeleton& skeleton, const Humanoid& humanoid) {
+  std::vector<Segment> segments(skeleton.nodes.size(), Segment::pelvis);
+  std::vector<char> own(segments.size(), 0);
+  for (int s = 0; s < kSegmentCount; ++s)
+    for (const int node : humanoid.segments[s].chain) {
+      segments[node] = segment_at(s);
+      own[node] = 1;
+    }
+  for (const int node : skeleton.order) {
+    const int parent = skeleton.nodes[node].parent;
+    if (!own[node] && parent >= 0) segments[node] = segments[parent];
+  }
+  return segments;
 }
 
 std::vector<char> carries_skin(const Character& character) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/character.h"
+#include "humanoid/humanoid.h"
 
 namespace ukemi {
 
@@ -19,6 +20,14 @@ struct SkinExtent {
 /// `counts(node)`: which vertices count, by the node that carries them (the joint of the largest weight).
 SkinExtent skin_extent(const Character& character, const std::vector<Affine>& world_from_node,
                        const Vec3& direction, const std::function<bool(int node)>& counts = {});
+
+/// Points on the edges of triangles whose ends both count, at most `spacing` apart, file units.
+std::vector<Vec3> surface_points(const Character& character, const std::vector<Affine>& world_from_node,
+                                 double spacing, const std::function<bool(int node)>& counts);
+
+/// The segment that moves each node and its skin: the node's own, or that of the node above it; the pelvis
+/// where there is none.
+std::vector<Segment> segments_of_nodes(const Skeleton& skeleton, const Humanoid& humanoid);
 
 /// Which nodes carry vertices: most of a skinned one's weight, or a mesh of their own.
 std::vector<char> carries_skin(const Character& character);

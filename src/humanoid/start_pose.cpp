@@ -200,10 +200,83 @@ Pose rest_on_feet(const Character& character, const Humanoid& humanoid) {
 
 }  // namespace
 
+namespace {
+
+/// The trunk's skin beside the arms of a standing body.
+class Trunk {
+ public:
+  Trunk(const Character& character, const Humanoid& humanoid, const Pose& standing) : humanoid_(humanoid) {
+    const std::vector<Segment> segments = segments_of_nodes(character.skeleton, humanoid);
+    const auto counts = [&](int node) {
+      const Segment s = segments[node];
+      return s == Segment::pelvis || s == Segment::abdomen || s == Segment::chest || is_thigh(s);
+    };
+    const Similarity& world = humanoid.world_from_file;
+    const double spacing = kSpacing * humanoid.height_m / world.scale;
+    for (const Vec3& point :
+         surface_points(character, world_transforms(character.skeleton, standing), spacing, counts))
+      points_.push_back(world * point);
+  }
+
+  /// How far the axis of an arm is outside the skin at its height, at least, metres: from the elbow to the
+  /// wrist. Large where there is no skin.
+  double clearance(const BodyPose& body, bool left) const {
+    const auto place = [&](Segment s) { return body[index(on_side(s, left))].translation; };
+    const Vec3 elbow = place(Segment::forearm_l), wrist = place(Segment::hand_l);
+    const Vec3 outwards = body[index(Segment::pelvis)].rotation * Vec3(0, 0, left ? -1 : 1);
+    double least = 1e300;
+    for (const Vec3& at : {elbow, Vec3(0.5 * (elbow + wrist)), wrist}) {
+      const double reach = farthest(at, outwards);
+      if (reach > -1e299) least = std::min(least, at.dot(outwards) - reach);
+    }
+    return least;
+  }
+
+ private:
+  static constexpr double kSpacing = 0.02;  // of the height
+  static constexpr double kBand = 0.03;     // of the height, up and down, forwards and backwards
+
+  static bool is_thigh(Segment s) { return s == Segment::thigh_l || s == Segment::thigh_r; }
+
+  double farthest(const Vec3& at, const Vec3& outwards) const {
+    double reach = -1e300;
+    for (const Vec3& point : points_) {
+      const Vec3 apart = point - at;
+      const double beside = (apart - apart.dot(outwards) * outwards).cwiseAbs().maxCoeff();
+      if (beside < kBand * humanoid_.height_m) reach = std::max(reach, point.dot(outwards));
+    }
+    return reach;
+  }
+
+  const Humanoid& humanoid_;
+  std::vector<Vec3> points_;
+};
+
+/// Standing with hanging arms, held away from a trunk that they would hang into where that helps.
+BodyPose stand(const Character& character, const Humanoid& humanoid, const BodyPose& from) {
+  constexpr double kStep_deg = 4.0, kMost_deg = 50.0;
+  Stance stance = kStand;
+  BodyPose body = body_in(stance, from);
+  const Trunk trunk(character, humanoid,
+                    pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, body));
+  const auto clearance = [&] { return std::min(trunk.clearance(body, true), trunk.clearance(body, false)); };
+  if (clearance() > 0.0) return body;
+  const BodyPose hanging = body;
+  while (stance.arm_l.abduction < kMost_deg) {
+    stance.arm_l.abduction += kStep_deg;
+    stance.arm_r.abduction += kStep_deg;
+    body = body_in(stance, from);
+    if (clearance() > 0.015 * humanoid.height_m) return body;
+  }
+  return hanging;
+}
+
+}  // namespace
+
 Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose kind) {
   if (kind == StartPose::rest) return stand_on_floor(character, humanoid, rest_on_feet(character, humanoid));
   const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
-  const BodyPose to = body_in(kind == StartPose::stand ? kStand : kGuard, from);
+  const BodyPose to = kind == StartPose::stand ? stand(character, humanoid, from) : body_in(kGuard, from);
   return stand_on_floor(character, humanoid,
                         pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, to));
 }

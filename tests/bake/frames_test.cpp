@@ -31,7 +31,7 @@ TEST(Frames, ComeBackFromTheExtras) {
   for (int i = 0; i < kSegmentCount; ++i) segments[i].rotation = exp_rotation(Vec3(0.1 * i, 0.2, -0.05 * i));
   const Pose pose = rest_pose(puppet.skeleton);
   const SegmentFrames frames = segment_frames(puppet.skeleton, puppet.humanoid, pose, segments);
-  const auto read = frames_in_extras(puppet.skeleton, animation_extras(puppet.skeleton, frames, {}));
+  const auto read = frames_in_extras(puppet.skeleton, animation_extras(puppet.skeleton, frames));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->node, frames.node);
   EXPECT_EQ(read->node[index(Segment::hand_l)], -1);
@@ -47,7 +47,7 @@ TEST(Frames, OfOtherExtrasAreNone) {
   const Puppet puppet;
   const SegmentFrames frames =
       segment_frames(puppet.skeleton, puppet.humanoid, rest_pose(puppet.skeleton), {});
-  std::string extras = animation_extras(puppet.skeleton, frames, {});
+  std::string extras = animation_extras(puppet.skeleton, frames);
   Skeleton other = puppet.skeleton;
   other.nodes[index(Segment::head)].name = "skull";
   EXPECT_FALSE(frames_in_extras(other, extras)) << "a node that is not there";
@@ -66,13 +66,13 @@ TEST(Frames, MarksComeBackFromTheExtras) {
   SegmentFrames none;
   none.node.fill(-1);
   const std::vector<Mark> marks =
-      marks_in_extras(animation_extras({}, none, {{{"impact", 0.25}, {"rest", 2.0}}}));
+      marks_in_extras(animation_extras({}, none, {{"impact", 0.25}, {"rest", 2.0}}));
   ASSERT_EQ(marks.size(), 2u);
   EXPECT_EQ(marks[0].name, "impact");
   EXPECT_EQ(marks[1].time_s, 2.0);
   for (const char* other :
        {"", "[1]", "{}", R"({"ukemi":{"marks":3}})", R"({"ukemi":{"marks":[{"name":"a"}]}})",
-        R"({"ukemi":{"marks":{"impact":"soon"}}})"})
+        R"({"ukemi":{"marks":[{"name":1,"time_s":0}]}})"})
     EXPECT_TRUE(marks_in_extras(other).empty()) << other;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "bake/bake.h"
+#include "humanoid/skin.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -341,6 +342,34 @@ TEST(Variant, OfExtraLimbs) {
   beast.add("Sword", hand, beast.place("RightHand") + Vec3(0, -0.05, 0.1));
   beast.add("Sword_tip", beast.at("Sword"), beast.place("RightHand") + Vec3(0, -0.05, 1.0));
   expect_human("tail, wings and a sword", beast);
+}
+
+TEST(Variant, OfWideBodiesHoldTheirArmsBesideTheTrunk) {
+  const auto hands_apart = [](double width) {
+    Variant v;
+    const std::vector<Segment> segments = segments_of_nodes(v.character.skeleton, [&] {
+      Diagnostics diagnostics;
+      return *map_humanoid(v.character, {}, diagnostics);
+    }());
+    for (MeshPart& part : v.character.parts)
+      for (std::size_t i = 0; i < part.positions.size(); ++i) {
+        const int joint = v.character.skins[part.skin].joints[part.joints[i][0]];
+        const Segment s = segments[joint];
+        if (s == Segment::abdomen || s == Segment::pelvis || s == Segment::chest)
+          part.positions[i].x() *= static_cast<float>(width);
+      }
+    const Character character = v.finish();
+    Diagnostics diagnostics;
+    const Humanoid humanoid = *map_humanoid(character, {}, diagnostics);
+    const BodyPose body =
+        segments_of(character.skeleton, humanoid, start_pose(character, humanoid, StartPose::stand));
+    const Vec3 apart = body[index(Segment::hand_l)].translation - body[index(Segment::hand_r)].translation;
+    return apart.norm();
+  };
+  const double slim_m = hands_apart(1.0);
+  EXPECT_LT(slim_m, 0.6);
+  EXPECT_EQ(hands_apart(1.2), slim_m) << "there is room";
+  EXPECT_GT(hands_apart(2.2), slim_m + 0.1);
 }
 
 TEST(Variant, WithoutNames) {
