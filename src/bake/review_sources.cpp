@@ -100,6 +100,13 @@ fs::path path_at(const Json& entry, const char* key, const fs::path& folder) {
   return is_inside(path) && fs::is_regular_file(folder / path, error) ? path : fs::path();
 }
 
+std::vector<std::string> texts_at(const Json& json, const char* key) {
+  std::vector<std::string> texts;
+  for (const Json& text : value_at(json, {key}))
+    if (text.is_string()) texts.push_back(text.get<std::string>());
+  return texts;
+}
+
 void add_report(ReviewSource& source, const fs::path& folder, Diagnostics& diagnostics) {
   Json settings = Json::parse(source.settings_json);
   Json figures = Json::parse(source.figures_json);
@@ -108,6 +115,7 @@ void add_report(ReviewSource& source, const fs::path& folder, Diagnostics& diagn
     if (report) {
       complete(settings, settings_of_report(*report));
       complete(figures, figures_of_report(*report));
+      if (source.warnings.empty()) source.warnings = texts_at(*report, "warnings");
     } else {
       diagnostics.warn(source.report.string(), report.error().what);
       source.report.clear();
@@ -129,9 +137,9 @@ ReviewSource source_of_entry(const Json& entry, const fs::path& folder, Diagnost
   source.status = text_at(entry, {"status"});
   source.error = text_at(entry, {"error"});
   source.digest = text_at(entry, {"digest"});
-  for (const Json& output : value_at(entry, {"outputs"}))
-    if (output.is_string() && is_inside(output.get<std::string>()))
-      source.outputs.push_back(output.get<std::string>());
+  for (const std::string& output : texts_at(entry, "outputs"))
+    if (is_inside(output)) source.outputs.push_back(output);
+  source.warnings = texts_at(entry, "warnings");
   source.clip = clip_among(source.outputs);
   source.report = path_at(entry, "report", folder);
   source.sheet = path_at(entry, "sheet", folder);

@@ -21,6 +21,7 @@ struct ReviewSource {
   std::filesystem::path report;
   std::filesystem::path sheet;
   std::vector<std::string> outputs;
+  std::vector<std::string> warnings;
   std::string settings_json = "{}";
   std::string figures_json = "{}";
 };

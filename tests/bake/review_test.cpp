@@ -126,6 +126,7 @@ TEST_F(Reviewed, AManifestTellsTheReactionsInItsOrder) {
         {"outputs", {"mannequin/head.glb"}},
         {"report", "mannequin/head.json"},
         {"settings", {{"hit", "head"}, {"variation", 3}}},
+        {"warnings", {"the left hand is fused"}},
         {"figures", {{"travel_m", 9.0}}},
         {"digest", "1234"}},
        {{"name", "a"}, {"character", "mannequin"}, {"status", "failed"}, {"error", "it diverged"}}});
@@ -137,6 +138,7 @@ TEST_F(Reviewed, AManifestTellsTheReactionsInItsOrder) {
   EXPECT_EQ(list[0]["name"], "b");
   EXPECT_EQ(list[0]["digest"], "1234");
   EXPECT_EQ(list[0]["settings"]["variation"], 3);
+  EXPECT_EQ(list[0]["warnings"], Json::array({"the left hand is fused"}));
   EXPECT_EQ(list[0]["settings"]["from"], "front") << "from the report";
   EXPECT_EQ(list[0]["figures"]["travel_m"], 9.0) << "as the manifest has it";
   EXPECT_EQ(list[1]["status"], "failed");

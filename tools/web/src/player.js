@@ -69,13 +69,14 @@ export class Player extends EventTarget {
     this.comment = el('textarea', { 'aria-label': 'Comment', placeholder: 'Comment (C)', rows: 2, oninput: () => this.reaction && this.judgements.set(this.reaction, { comment: this.comment.value }) });
     this.stale = el('p', { class: 'stale', hidden: true }, 'Baked anew since it was judged.');
     this.figures = el('table', { class: 'figures' });
+    this.warnings = el('ul', { class: 'warnings', 'aria-label': 'Warnings' });
     this.files = el('p', { class: 'files' });
     this.rom = new RomPanel();
     this.rom.onselect = (joint) => this.selectJoint(joint);
     this.romTitle = el('h3', {}, 'Range of motion');
     const side = el('div', { class: 'side', role: 'region', 'aria-label': 'Verdict and figures', tabindex: '0' },
       el('h3', {}, 'Verdict'), el('div', { class: 'verdict' }, this.acceptButton, this.rejectButton), this.comment, this.stale,
-      this.romTitle, this.rom.node, el('h3', {}, 'Figures'), this.figures, this.files);
+      this.romTitle, this.rom.node, el('h3', {}, 'Figures'), this.figures, this.warnings, this.files);
 
     this.playButton = el('button', { type: 'button', class: 'button play icon', 'aria-label': 'Play', title: 'Play or pause (Space)', onclick: () => this.togglePlay() }, glyph('play'));
     this.clock = el('span', { class: 'clock' });
@@ -211,8 +212,10 @@ export class Player extends EventTarget {
   tellFigures() {
     const other = this.pinned && this.pinned.reaction !== this.reaction ? figuresOf(this.pinned.reaction) : null;
     const rows = figuresOf(this.reaction).map(([name, text, bad], i) =>
-      el('tr', {}, el('th', { scope: 'row' }, name), other ? el('td', { class: other[i][2] && 'bad' }, other[i][1]) : null, el('td', { class: bad && 'bad' }, text)));
+      el('tr', {}, el('th', { scope: 'row' }, name), other ? el('td', { class: other[i]?.[2] && 'bad' }, other[i]?.[1] ?? '–') : null, el('td', { class: bad && 'bad' }, text)));
     this.figures.replaceChildren(...(other ? [el('thead', {}, el('tr', {}, el('td'), el('td', {}, 'pinned'), el('td', {}, 'this')))] : []), el('tbody', {}, rows));
+    this.warnings.replaceChildren(...(this.reaction.warnings ?? []).map((warning) => el('li', {}, warning)));
+    this.warnings.hidden = this.warnings.children.length === 0;
     const files = [...new Set([...this.reaction.outputs, this.reaction.report, this.reaction.sheet].filter(Boolean))];
     this.files.replaceChildren(...files.map((file) => el('a', { href: address(file) }, file.split('/').pop())));
   }

@@ -102,7 +102,7 @@ export function inOrder(reactions, orderKey, down) {
 export function matches(reaction, filters, text) {
   for (const { key, values } of FILTERS) if (filters[key] && !values(reaction).includes(filters[key])) return false;
   if (!text) return true;
-  const all = `${reaction.character} ${reaction.name} ${targetOf(reaction) ?? ''} ${strengthOf(reaction) ?? ''}`.toLowerCase();
+  const all = `${reaction.character} ${reaction.name} ${targetOf(reaction) ?? ''} ${strengthOf(reaction) ?? ''} ${startOf(reaction) ?? ''}`.toLowerCase();
   return text.toLowerCase().split(/\s+/).every((word) => all.includes(word));
 }
 
@@ -115,6 +115,13 @@ export const seconds = text(2, ' s');
 export const newtonSeconds = text(0, ' N s');
 const joules = text(1, ' J');
 
+/// "walk at 0.40 s", or the pose.
+export function startOf(reaction) {
+  const { clip, at_s: at, pose } = reaction.settings ?? {};
+  if (known(clip)) return known(at) ? `${clip} at ${seconds(at)}` : String(clip);
+  return known(pose) ? String(pose) : null;
+}
+
 /// Rows of the player's table: name, text, whether it is bad.
 export function figuresOf(reaction) {
   const f = reaction.figures ?? {};
@@ -124,6 +131,7 @@ export function figuresOf(reaction) {
     ['Samples over 1°', known(over) ? (known(f.samples) ? `${over} of ${f.samples}` : String(over)) : '–', over > 0],
     ['Worst joint', f.worst_joint ?? '–', false],
     ['Excess of the clip', degrees(f.clip_excess_max_deg), f.clip_excess_max_deg > 1],
+    ['Start', startOf(reaction) ?? '–', false],
     ['Momentum', newtonSeconds(f.momentum_n_s), false],
     ['Travel', metres(f.travel_m), false],
     ['Rest after', f.settled === false ? 'not settled' : seconds(f.rest_time_s), f.settled === false],
@@ -132,6 +140,7 @@ export function figuresOf(reaction) {
     ['Energy gained', joules(f.energy_gain_max_j), false],
     ['Into the floor', millimetres(f.floor_penetration_max_m), f.floor_penetration_max_m > 0.01],
     ['Into itself', millimetres(f.self_penetration_max_m), false],
+    ...(known(reaction.settings?.variation) ? [['Variation', `${reaction.settings.variation}, seed ${reaction.settings.seed ?? '–'}`, false]] : []),
   ];
 }
 
