@@ -224,6 +224,7 @@ export class Player extends EventTarget {
     this.dialog.close();
   }
   onClose() {
+    if (this.isOpen) return; // opened again before it heard of its end
     this.setPlaying(false);
     this.asked = null;
     theStage()?.hide();
