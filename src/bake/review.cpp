@@ -223,7 +223,7 @@ Json reaction_json(const ReviewSource& source, const Made& made) {
   json["error"] = text_or_null(made.error.empty() ? source.error : made.error);
   json["settings"] = Json::parse(source.settings_json);
   json["figures"] = std::move(figures);
-  json["digest"] = text_or_null(source.digest.empty() ? made.clip_file : source.digest);
+  json["digest"] = text_or_null(source.digest);
   json["warnings"] = source.warnings;
   json["outputs"] = source.outputs;
   json["report"] = link(source.report);

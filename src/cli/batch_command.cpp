@@ -9,6 +9,7 @@
 
 #include "bake/batch.h"
 #include "bake/manifest.h"
+#include "bake/review.h"
 #include "base/files.h"
 #include "cli/batch_progress.h"
 #include "cli/commands.h"
@@ -29,6 +30,7 @@ struct BatchRequest {
   double memory_mb = 4096.0;
   double max_excess_deg = -1.0;
   bool dry_run = false;
+  bool page = true;
   bool json = false;
   bool quiet = false;
 };
@@ -89,6 +91,9 @@ void declare(Options& options, BatchRequest& request) {
                  "reject reactions that leave the range of motion farther (before projection); status 1");
   options.flag("--reject-unsettled", settings.reject_unsettled,
                "reject reactions that do not come to rest; status 1");
+  options.on_off(
+      "review", request.page, [&request](bool on) { request.page = on; },
+      "make the review page, FOLDER/index.html; not of a shard", "leave it to ukemi review");
   options.group("workers");
   options.custom(
       "-j,--jobs", "N",
@@ -217,6 +222,16 @@ int report_stop(const BatchRequest& request, const BatchResult& result) {
   return 128 + g_stopped_by;
 }
 
+/// The page to judge the batch by. Errors: those of write_review.
+Status make_page(const BatchRequest& request) {
+  Diagnostics diagnostics;
+  const auto review =
+      write_review(request.settings.folder, {request.settings.workers.workers}, diagnostics, {});
+  print_warnings(diagnostics);
+  if (!review) return review.error();
+  return Done{};
+}
+
 int run_planned(const BatchRequest& request, const BatchPlan& plan) {
   const StopSignals signals;
   auto result = [&] {
@@ -230,6 +245,8 @@ int run_planned(const BatchRequest& request, const BatchPlan& plan) {
   }();
   if (!result) return print_error(result.error());
   if (result->stopped || result->cannot_write) return report_stop(request, *result);
+  if (request.page && request.settings.shard.whole())
+    if (const Status made = make_page(request); !made) return print_error(made.error());
   const bool all_well = count(*result, ReactionStatus::done) == result->entries.size();
   const int status = all_well ? 0 : 1;
   if (request.quiet) return status;

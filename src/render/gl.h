@@ -28,6 +28,7 @@
   X(CreateProgram, CREATEPROGRAM)                                   \
   X(CreateShader, CREATESHADER)                                     \
   X(DeleteShader, DELETESHADER)                                     \
+  X(DeleteTextures, DELETETEXTURES)                                 \
   X(DepthMask, DEPTHMASK)                                           \
   X(DepthFunc, DEPTHFUNC)                                           \
   X(Disable, DISABLE)                                               \

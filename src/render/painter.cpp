@@ -103,6 +103,7 @@ void blur(std::vector<float>& map, int size, double radius_px) {
 
 struct Painter::State {
   std::unique_ptr<Offscreen> context;
+  OffscreenKind asked;  // what kind of context
   Gl gl;
   int width, height;
   GLuint surface = 0, depth = 0, flat = 0, floor = 0;                        // programs
@@ -112,11 +113,12 @@ struct Painter::State {
   std::vector<GLuint> textures;
   std::string trouble;
 
-  State(std::unique_ptr<Offscreen> offscreen, int w, int h)
-      : context(std::move(offscreen)), width(w), height(h) {}
+  State(std::unique_ptr<Offscreen> offscreen, OffscreenKind wanted, int w, int h)
+      : context(std::move(offscreen)), asked(wanted), width(w), height(h) {}
 
   // Set-up.
-  bool set_up(const std::vector<Picture>& pictures);
+  void set_up();
+  bool take_textures(const std::vector<Picture>& pictures);
   GLuint compile(GLenum kind, const char* source);
   GLuint link(const char* vertex, const char* fragment);
   GLuint texture(GLint format, int w, int h, GLenum layout, GLenum type, const void* pixels);
@@ -255,18 +257,25 @@ void Painter::State::make_buffers() {
   attribute(3, 4, offsetof(Vertex, color));
 }
 
-bool Painter::State::set_up(const std::vector<Picture>& pictures) {
+void Painter::State::set_up() {
   if (!gl.load(*context)) {
     trouble = "an OpenGL function is missing";
-    return false;
+    return;
   }
   surface = link(shaders::kSurfaceVertex, shaders::kSurfaceFragment);
   depth = link(shaders::kDepthVertex, shaders::kDepthFragment);
   flat = link(shaders::kFlatVertex, shaders::kFlatFragment);
   floor = link(shaders::kFloorVertex, shaders::kFloorFragment);
-  if (!trouble.empty() || !make_targets()) return false;
+  if (!trouble.empty() || !make_targets()) return;
   make_buffers();
   white = upload({1, 1, {255, 255, 255, 255}});
+}
+
+/// In place of those it had.
+bool Painter::State::take_textures(const std::vector<Picture>& pictures) {
+  for (const GLuint id : textures)
+    if (id != white) gl.DeleteTextures(1, &id);
+  textures.clear();
   for (const Picture& picture : pictures) textures.push_back(picture.rgba.empty() ? white : upload(picture));
   if (gl.GetError() == GL_NO_ERROR) return true;
   trouble = "OpenGL refused a resource";
@@ -425,15 +434,34 @@ Picture Painter::State::read() const {
   return picture;
 }
 
+/// What the thread's last painter drew with: to compile its programs takes longer than to draw small
+/// pictures.
+struct Painter::Spare {
+  static std::unique_ptr<State>& of_thread() {
+    thread_local std::unique_ptr<State> state;
+    return state;
+  }
+  /// Null where the spare one does not fit; it is given up then.
+  static std::unique_ptr<State> take(int width, int height, OffscreenKind kind) {
+    auto state = std::move(of_thread());
+    const bool fits = state && state->width == width && state->height == height && state->asked == kind;
+    return fits ? std::move(state) : nullptr;
+  }
+};
+
 Painter::Painter(std::unique_ptr<State> state) : state_(std::move(state)) {}
-Painter::~Painter() = default;
+Painter::~Painter() { Spare::of_thread() = std::move(state_); }
 
 Result<std::unique_ptr<Painter>> Painter::make(int width, int height, const std::vector<Picture>& textures,
                                                OffscreenKind kind) {
-  auto context = make_offscreen(kind);
-  if (!context) return context.error();
-  auto state = std::make_unique<State>(std::move(*context), width, height);
-  if (!state->set_up(textures))
+  auto state = Spare::take(width, height, kind);
+  if (!state) {
+    auto context = make_offscreen(kind);
+    if (!context) return context.error();
+    state = std::make_unique<State>(std::move(*context), kind, width, height);
+    state->set_up();
+  }
+  if (!state->trouble.empty() || !state->take_textures(textures))
     return Error{ErrorKind::output,
                  "",
                  0,

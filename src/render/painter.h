@@ -21,7 +21,8 @@ struct Stage {
   Theme theme = ukemi::theme(ThemeKind::light);
 };
 
-/// One off-screen context with pictures of one size.
+/// One off-screen context with pictures of one size. One at a time on a thread; the next of the same size
+/// takes over what it drew with.
 class Painter {
  public:
   /// `textures`: image i of the character, empty where it is not used. Errors: output.
@@ -33,6 +34,7 @@ class Painter {
 
  private:
   struct State;
+  struct Spare;
   explicit Painter(std::unique_ptr<State> state);
 
   std::unique_ptr<State> state_;

@@ -1,7 +1,10 @@
 // What the reviewer decided: kept in the browser, handed over as JSON that `ukemi batch --rejects` reads.
 import { idOf } from './reactions.js';
 
-/// One verdict: { verdict: 'accept' | 'reject' | null, comment, digest }. The digest tells which bake was judged.
+/// Tells which bake of a reaction was judged.
+const bakeOf = (reaction) => reaction.digest ?? reaction.clip;
+
+/// One verdict: { verdict: 'accept' | 'reject' | null, comment, bake }.
 export class Judgements extends EventTarget {
   constructor(reactions, place) {
     super();
@@ -43,15 +46,15 @@ export class Judgements extends EventTarget {
   }
   /// Judged, and baked anew since.
   isStale(reaction) {
-    const { verdict, digest } = this.of(reaction);
-    return Boolean(verdict && digest && reaction.digest && digest !== reaction.digest);
+    const { verdict, bake } = this.of(reaction);
+    return Boolean(verdict && bake && bakeOf(reaction) && bake !== bakeOf(reaction));
   }
 
   set(reaction, change) {
     const id = idOf(reaction);
     const before = this.of(reaction);
     if ('verdict' in change) this.history.push({ id, before });
-    const after = { ...before, ...change, digest: reaction.digest };
+    const after = { ...before, ...change, bake: bakeOf(reaction) };
     if (after.verdict || after.comment) this.verdicts.set(id, after);
     else this.verdicts.delete(id);
     this.write();
@@ -79,12 +82,9 @@ export class Judgements extends EventTarget {
   exported() {
     const list = (verdict) =>
       [...this.byId.values()]
-        .filter((reaction) => this.verdict(reaction) === verdict)
-        .map((reaction) => ({ character: reaction.character, name: reaction.name, comment: this.of(reaction).comment ?? '' }));
-    const comments = [...this.byId.values()]
-      .filter((reaction) => !this.verdict(reaction) && this.of(reaction).comment)
-      .map((reaction) => ({ character: reaction.character, name: reaction.name, comment: this.of(reaction).comment }));
-    return { format: 1, rejects: list('reject'), accepts: list('accept'), comments };
+        .filter((reaction) => this.verdict(reaction) === verdict && (verdict || this.of(reaction).comment))
+        .map(({ character, name, digest }) => ({ character, name, comment: this.verdicts.get(idOf({ character, name })).comment ?? '', ...(digest ? { digest } : {}) }));
+    return { format: 1, rejects: list('reject'), accepts: list('accept'), comments: list(null) };
   }
 
   /// Takes over an exported file. Returns how many of its judgements are on reactions of this page.
@@ -95,7 +95,7 @@ export class Judgements extends EventTarget {
       for (const { character, name, comment } of list ?? []) {
         const reaction = this.byId.get(`${character}/${name}`);
         if (!reaction) continue;
-        this.verdicts.set(idOf(reaction), { verdict, comment: typeof comment === 'string' ? comment : '', digest: reaction.digest });
+        this.verdicts.set(idOf(reaction), { verdict, comment: typeof comment === 'string' ? comment : '', bake: bakeOf(reaction) });
         ++count;
       }
     };
