@@ -15,9 +15,10 @@ namespace ukemi {
 namespace {
 
 constexpr const char* kAboutThePage =
-    "\nDIR/index.html opens from disk in any browser, and from any web server; it needs DIR/review/ beside\n"
-    "it and the clips only for its links. Verdicts stay in the browser; Export writes them to a JSON file:\n"
-    "the page's help tells its form and all keys.\n";
+    "\nDIR/index.html opens from disk in any browser, and from any web server; it needs DIR/review/ beside "
+    "it\n"
+    "and the clips only for its links. Verdicts stay in the browser; Export writes them to a JSON file for\n"
+    "ukemi batch RECIPE --rejects FILE.\n";
 
 std::string counted(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -36,7 +37,7 @@ int review_command(const Arguments& arguments) {
   double threads = settings.threads;
   bool quiet = false;
   Options options("review", "makes the web page to judge reactions by");
-  options.argument("DIR", folder, "a folder of baked clips and their reports");
+  options.argument("DIR", folder, "what ukemi batch wrote, or any folder of baked clips and their reports");
   options.number("-j,--jobs", "N", threads, Range{1.0, 256.0}, "clips read at the same time");
   options.flag("--quiet", quiet, "nothing on stdout");
   const auto outcome = options.parse(arguments);

@@ -22,6 +22,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kToleranceM = 0.0001;
 constexpr int kTimes = 12;
+constexpr std::string_view kRecipe = R"(format = 1
+characters = ["mannequin"]
+outputs = ["glb", "report"]
+
+[[matrix]]
+hit = ["head", "chest", "thigh_l"]
+from = ["front", "left"]
+preset = "punch"
+)";
 const char* const kHostileName = "</script><img src=x onerror=alert(1)>'\"&amp;";
 
 /// The program's output and exit status.
@@ -51,7 +60,6 @@ class Browser : public testing::Test {
     if (const std::string what = missing(); !what.empty()) GTEST_SKIP() << what;
     folder = fs::path(testing::TempDir()) / ("ukemi_browser_" + std::to_string(getpid()));
     fs::remove_all(folder);
-    fs::create_directories(folder / "batch/mannequin");
     fs::create_directories(folder / "hostile");
   }
   void TearDown() override {
@@ -61,11 +69,6 @@ class Browser : public testing::Test {
   void program(const std::string& arguments) {
     const auto [output, status] = run(fmt::format("'{}' {}", UKEMI_PROGRAM, arguments));
     ASSERT_EQ(status, 0) << arguments << "\n" << output;
-  }
-  void bake(const std::string& hit, const std::string& from) {
-    const std::string stem = (folder / "batch/mannequin" / (hit + "_" + from)).string();
-    program(fmt::format("bake mannequin --hit {} --from {} -o '{}.glb' --report '{}.json' --quiet", hit, from,
-                        stem, stem));
   }
 
   fs::path folder;
@@ -93,9 +96,9 @@ Json judged(const fs::path& file, const std::string& id) {
 }
 
 TEST_F(Browser, ServesAReviewer) {
-  for (const char* hit : {"head", "chest", "thigh_l"})
-    for (const char* from : {"front", "left"}) bake(hit, from);
-  program(fmt::format("review '{}' --quiet", (folder / "batch").string()));
+  ASSERT_TRUE(write_file(folder / "few.toml", kRecipe));
+  program(
+      fmt::format("batch '{}' -o '{}' --quiet", (folder / "few.toml").string(), (folder / "batch").string()));
   const fs::path clip = folder / "batch/mannequin/head_left.glb";
   fs::copy_file(clip, folder / "hostile/a.glb");
   const Json manifest{

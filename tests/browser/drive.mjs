@@ -64,6 +64,7 @@ async function filtersAndOrder(page) {
 
 async function judgeByKeys(page) {
   await page.keyboard.press('Escape');
+  await page.keyboard.press('Home');
   const order = await names(page);
   await page.keyboard.press('a');
   await page.keyboard.press('r');
@@ -93,10 +94,12 @@ async function exportAndImport(browser, page, order) {
   await page.keyboard.press('e');
   const file = await (await waiting).path();
   const [character] = work.judged.id.split('/');
+  const { reactions } = JSON.parse(readFileSync(join(work.folder, 'manifest.json'), 'utf8'));
+  const digest = (name) => reactions.find((one) => one.name === name).digest;
   const wanted = {
     format: 1,
-    rejects: [{ character, name: order[1], comment: 'the left hand <b>sticks</b>' }],
-    accepts: [{ character, name: order[0], comment: '' }],
+    rejects: [{ character, name: order[1], comment: 'the left hand <b>sticks</b>', digest: digest(order[1]) }],
+    accepts: [{ character, name: order[0], comment: '', digest: digest(order[0]) }],
     comments: [],
   };
   equal('export', JSON.parse(readFileSync(file, 'utf8')), wanted);
