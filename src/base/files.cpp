@@ -26,22 +26,25 @@ Error output_error(const fs::path& path, const std::string& what) {
           "choose a folder that exists, has space and that you may write to"};
 }
 
-/// Closes and, unless released, removes the temporary file.
+/// A file without a name, where the file system has such: it vanishes with the process that writes it. Else
+/// one beside the target, removed unless it is finished.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(std::string pattern)
-      : path_(std::move(pattern)), fd_(mkostemp(path_.data(), O_CLOEXEC)) {}
+  explicit TemporaryFile(const fs::path& target) : path_(target.string() + ".XXXXXX") {
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    fd_ = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);
+    if (fd_ >= 0) return;
+    fd_ = mkostemp(path_.data(), O_CLOEXEC);
+    named_ = fd_ >= 0;
+  }
   ~TemporaryFile() {
     if (fd_ >= 0) close(fd_);
-    if (created_ && !released_) unlink(path_.c_str());
+    if (named_) unlink(path_.c_str());
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  bool ok() {
-    created_ = fd_ >= 0;
-    return created_;
-  }
+  bool ok() const { return fd_ >= 0; }
   bool write_all(std::span<const std::uint8_t> bytes) {
     while (!bytes.empty()) {
       const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
@@ -55,18 +58,35 @@ class TemporaryFile {
     const mode_t mask = umask(0);
     umask(mask);
     if (fchmod(fd_, 0666 & ~mask) != 0) return false;
+    if (!named_ && link_as(target.string())) return true;
+    if (!named_ && !give_name()) return false;
     const int fd = fd_;
     fd_ = -1;
-    if (close(fd) != 0) return false;
-    released_ = std::rename(path_.c_str(), target.c_str()) == 0;
-    return released_;
+    if (close(fd) != 0 || std::rename(path_.c_str(), target.c_str()) != 0) return false;
+    named_ = false;
+    return true;
   }
 
  private:
+  bool link_as(const std::string& path) const {
+    const std::string self = "/proc/self/fd/" + std::to_string(fd_);
+    return linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  }
+  /// A link cannot replace a file, so that it needs a name of its own to be renamed from.
+  bool give_name() {
+    constexpr int kTries = 100;
+    const std::string stem = path_.substr(0, path_.size() - 6) + std::to_string(getpid()) + ".";
+    for (int i = 0; i < kTries && !named_; ++i) {
+      path_ = stem + std::to_string(i);
+      named_ = link_as(path_);
+      if (!named_ && errno != EEXIST) return false;
+    }
+    return named_;
+  }
+
   std::string path_;
-  int fd_;
-  bool created_ = false;
-  bool released_ = false;
+  int fd_ = -1;
+  bool named_ = false;
 };
 
 }  // namespace
@@ -105,7 +125,7 @@ Status write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
   struct stat info {};
   if (stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
     return output_error(path, S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file");
-  TemporaryFile file(path.string() + ".XXXXXX");
+  TemporaryFile file(path);
   if (!file.ok() || !file.write_all(bytes) || !file.finish_as(path))
     return output_error(path, std::strerror(errno));
   return Done{};

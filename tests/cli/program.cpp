@@ -20,9 +20,9 @@ std::string content_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Starts the program with its outputs in two files and its working directory in `folder`.
-int spawn_and_wait(const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& out,
-                   const fs::path& err) {
+/// The program with its outputs in two files and its working directory in `folder`; -1 where it cannot start.
+pid_t spawn(const std::vector<std::string>& arguments, const fs::path& folder, const fs::path& out,
+            const fs::path& err) {
   std::vector<char*> words;
   std::string program = UKEMI_PROGRAM;
   words.push_back(program.data());
@@ -38,11 +38,7 @@ int spawn_and_wait(const std::vector<std::string>& arguments, const fs::path& fo
   pid_t child = 0;
   const int failed = posix_spawn(&child, words[0], &actions, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) return -1;
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return failed != 0 ? -1 : child;
 }
 
 }  // namespace
@@ -57,18 +53,29 @@ void Program::SetUp() {
 
 void Program::TearDown() { fs::remove_all(folder); }
 
-Ran Program::run(const std::vector<std::string>& arguments, const fs::path& given_out) {
-  const fs::path out = given_out.empty() ? fs::path(folder.string() + ".out") : given_out;
-  const fs::path err = folder.string() + ".err";
-  Ran result;
-  result.status = spawn_and_wait(arguments, folder, out, err);
-  result.err = content_of(err);
-  if (given_out.empty()) {
-    result.out = content_of(out);
-    fs::remove(out);
+pid_t Program::start(const std::vector<std::string>& arguments, const fs::path& out) {
+  out_ = out.empty() ? fs::path(folder.string() + ".out") : out;
+  err_ = folder.string() + ".err";
+  return spawn(arguments, folder, out_, err_);
+}
+
+Ran Program::wait(pid_t child) {
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  fs::remove(err);
+  Ran result;
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  result.err = content_of(err_);
+  if (out_ == folder.string() + ".out") {
+    result.out = content_of(out_);
+    fs::remove(out_);
+  }
+  fs::remove(err_);
   return result;
+}
+
+Ran Program::run(const std::vector<std::string>& arguments, const fs::path& out) {
+  return wait(start(arguments, out));
 }
 
 std::vector<std::string> Program::files() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <sys/types.h>
 
 #include <filesystem>
 #include <string>
@@ -20,7 +21,10 @@ class Program : public testing::Test {
   void SetUp() override;
   void TearDown() override;
 
-  /// The program with these arguments, in `folder`; stdout goes to `out` where one is given.
+  /// Starts the program in `folder`; its outputs are read by `wait`, which waits for its end.
+  pid_t start(const std::vector<std::string>& arguments, const std::filesystem::path& out = {});
+  Ran wait(pid_t child);
+  /// Both. The program with these arguments, in `folder`; stdout goes to `out` where one is given.
   Ran run(const std::vector<std::string>& arguments, const std::filesystem::path& out = {});
   /// Names of everything in `folder`, sorted.
   std::vector<std::string> files() const;
@@ -31,6 +35,9 @@ class Program : public testing::Test {
   void expect_refused(const std::vector<std::string>& arguments, int status, const std::string& what);
 
   std::filesystem::path folder;
+
+ private:
+  std::filesystem::path out_, err_;  // of the program that runs
 };
 
 }  // namespace ukemi
