@@ -2,6 +2,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <csignal>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "bake/batch.h"
 #include "bake/manifest.h"
+#include "bake/review.h"
 #include "base/files.h"
 #include "cli/batch_progress.h"
 #include "cli/commands.h"
@@ -29,6 +31,7 @@ struct BatchRequest {
   double memory_mb = 4096.0;
   double max_excess_deg = -1.0;
   bool dry_run = false;
+  bool review = true;
   bool json = false;
   bool quiet = false;
 };
@@ -100,6 +103,9 @@ void declare(Options& options, BatchRequest& request) {
   options.number("--job-memory", "MB", request.memory_mb, Range{256.0, 1048576.0},
                  "address space of a worker; one that needs more loses its reaction, after a second try");
   options.group("out");
+  options.on_off(
+      "review", true, [&request](bool on) { request.review = on; },
+      "make the review page, index.html, once all is baked", "make none");
   options.flag("--json", request.json, "the manifest to stdout");
   options.flag("--quiet", request.quiet, "nothing to stdout, no progress");
 }
@@ -217,6 +223,17 @@ int report_stop(const BatchRequest& request, const BatchResult& result) {
   return 128 + g_stopped_by;
 }
 
+/// The page over what was baked; a shard has none.
+Status make_page(const BatchRequest& request, const BatchResult& result) {
+  const bool has_any = std::any_of(result.entries.begin(), result.entries.end(),
+                                   [](const auto& entry) { return entry.record && entry.record->done(); });
+  if (!request.review || !request.settings.shard.whole() || !has_any) return Done{};
+  Diagnostics diagnostics;
+  const auto review = write_review(request.settings.folder, {request.settings.workers.workers}, diagnostics);
+  if (!request.quiet) print_warnings(diagnostics);
+  return review ? Status(Done{}) : Status(review.error());
+}
+
 int run_planned(const BatchRequest& request, const BatchPlan& plan) {
   const StopSignals signals;
   auto result = [&] {
@@ -230,6 +247,7 @@ int run_planned(const BatchRequest& request, const BatchPlan& plan) {
   }();
   if (!result) return print_error(result.error());
   if (result->stopped || result->cannot_write) return report_stop(request, *result);
+  if (const Status status = make_page(request, *result); !status) return print_error(status.error());
   const bool all_well = count(*result, ReactionStatus::done) == result->entries.size();
   const int status = all_well ? 0 : 1;
   if (request.quiet) return status;
