@@ -45,7 +45,8 @@ std::string file_name_from(std::string_view text) {
     else if (name.empty() || name.back() != '_')
       name += '_';
   }
-  if (!name.empty() && (name.front() == '.' || name.front() == '-')) name.front() = '_';
+  if (const std::size_t plain = std::min(name.find_first_not_of("._-"), name.size()); plain > 0)
+    name.replace(0, plain, "_");
   name = shortened(name, kMaxBytes);
   while (!name.empty() && (name.back() == '.' || name.back() == '_')) name.pop_back();
   if (name.empty()) return "unnamed";

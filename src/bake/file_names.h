@@ -8,7 +8,7 @@
 namespace ukemi {
 
 /// The text as a file name without extension, legal on Linux, macOS and Windows: letters, digits, . _ - and
-/// whatever is not ASCII stay; anything else, a run of underscores, a leading dot or hyphen becomes one
+/// whatever is not ASCII stay; anything else, a run of underscores, and dots and hyphens in front become one
 /// underscore; names that Windows reserves get one behind them; at most 100 bytes. Never empty.
 std::string file_name_from(std::string_view text);
 

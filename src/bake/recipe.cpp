@@ -95,9 +95,13 @@ bool may_be_file(const Setting& setting) { return setting.value.find("FILE") != 
 /// Reads one recipe; the first fault stops it.
 class RecipeReader {
  public:
-  explicit RecipeReader(const fs::path& file) : file_(file.string()), folder_(file.parent_path()) {}
+  RecipeReader(const fs::path& file, toml::table document)
+      : file_(file.string()),
+        folder_(file.parent_path()),
+        document_(std::make_shared<const toml::table>(std::move(document))) {}
 
-  Recipe read(const toml::table& table) {
+  Recipe read() {
+    const toml::table& table = *document_;
     recipe_.file = file_;
     for (const Entry& entry : entries_of(table))
       if (std::find(kTopKeys.begin(), kTopKeys.end(), entry.key) == kTopKeys.end())
@@ -107,7 +111,7 @@ class RecipeReader {
     read_characters(table);
     if (const toml::node* node = table.get("settings")) recipe_.settings = read_settings(*node, {});
     read_character_tables(table);
-    take_limits(table);
+    take_limits();
     outputs_ = {OutputKind::glb, OutputKind::sheet, OutputKind::report};
     if (const toml::node* node = table.get("outputs")) outputs_ = read_outputs(*node);
     if (const toml::node* node = table.get("name")) pattern_ = text_of(*node, "name");
@@ -343,24 +347,25 @@ class RecipeReader {
 
   /// Joints of the recipe, then of each table that names the character. Tried on the human range, so that
   /// faults are found here.
-  void take_limits(const toml::table& document) {
+  void take_limits() {
+    const toml::table& document = *document_;
     const auto human = load_range_of_motion("human");
     if (!human) throw Fault{human.error()};
     const toml::table* tables = document["character"].as_table();
     for (std::size_t i = 0; i < recipe_.characters.size(); ++i) {
-      auto changes = std::make_shared<std::vector<toml::array>>();
-      if (const toml::array* joints = joints_of(document.get("joint"))) changes->push_back(*joints);
+      std::vector<const toml::array*> changes;
+      if (const toml::array* joints = joints_of(document.get("joint"))) changes.push_back(joints);
       for (const Entry& entry : tables ? entries_of(*tables) : std::vector<Entry>()) {
         const std::vector<std::size_t> named = characters_named(entry.key);
         if (std::find(named.begin(), named.end(), i) == named.end()) continue;
         if (const toml::array* joints = joints_of(entry.node->as_table()->get("joint")))
-          changes->push_back(*joints);
+          changes.push_back(joints);
       }
-      if (changes->empty()) continue;
+      if (changes.empty()) continue;
       auto& limits = recipe_.characters[i].limits;
-      limits = [changes, file = file_](RangeOfMotion range) -> Result<RangeOfMotion> {
-        for (const toml::array& joints : *changes) {
-          auto changed = with_joint_tables(std::move(range), joints, file);
+      limits = [changes, document = document_, file = file_](RangeOfMotion range) -> Result<RangeOfMotion> {
+        for (const toml::array* joints : changes) {
+          auto changed = with_joint_tables(std::move(range), *joints, file);
           if (!changed) return changed;
           range = std::move(*changed);
         }
@@ -497,6 +502,7 @@ class RecipeReader {
 
   std::string file_;
   fs::path folder_;
+  std::shared_ptr<const toml::table> document_;  // kept by what `limits` reads of it: copies have no lines
   Recipe recipe_;
   std::vector<OutputKind> outputs_;
   std::optional<std::string> pattern_;
@@ -522,7 +528,7 @@ std::string_view extension(OutputKind kind) {
 
 Result<Recipe> parse_recipe(std::string_view toml, const fs::path& file) {
   try {
-    return RecipeReader(file).read(toml::parse(toml, file.string()));
+    return RecipeReader(file, toml::parse(toml, file.string())).read();
   } catch (const Fault& fault) {
     return fault.error;
   } catch (const toml::parse_error& error) {

@@ -11,7 +11,7 @@ TEST(FileNames, KeepWhatEveryFileSystemTakes) {
 }
 
 TEST(FileNames, LeaveNoFolderControlCharacterOrReservedName) {
-  EXPECT_EQ(file_name_from("../../etc/passwd"), "_._etc_passwd");
+  EXPECT_EQ(file_name_from("../../etc/passwd"), "_etc_passwd");
   EXPECT_EQ(file_name_from("a\\b:c*d?e\"f<g>h|i\nj\x01k"), "a_b_c_d_e_f_g_h_i_j_k");
   EXPECT_EQ(file_name_from("head__left"), "head_left");
   EXPECT_EQ(file_name_from("-o"), "_o");

@@ -135,7 +135,7 @@ from = ["left", "10,20"]
 name = "{hit} {from}"
 from = ["10,20"]
 )");
-  EXPECT_EQ(names(all), (std::vector<std::string>{"_._chest", "_._chest_2", "chest_10_20"}));
+  EXPECT_EQ(names(all), (std::vector<std::string>{"_chest", "_chest_2", "chest_10_20"}));
   for (const Reaction& reaction : all)
     EXPECT_EQ(reaction.settings.outputs.at(0).parent_path(), "mannequin") << reaction.settings.outputs.at(0);
 }
@@ -260,7 +260,7 @@ TEST_F(RecipeFolder, CharactersAreFilesBesideTheRecipeEachWithAFolderOfItsOwn) {
   }
   EXPECT_EQ(files, (std::vector<std::string>{"heroes/a.glb", "heroes/b.glb", "mannequin", "heroes/a.fbx",
                                              "odd [1].bvh"}));
-  EXPECT_EQ(folders, (std::vector<std::string>{"a", "b", "mannequin", "a_2", "odd_1_"}));
+  EXPECT_EQ(folders, (std::vector<std::string>{"a", "b", "mannequin", "a_2", "odd_1"}));
   EXPECT_EQ(recipe.characters[0].file, (folder / "heroes/a.glb").string());
   const auto all = reactions_of(recipe, {});
   ASSERT_TRUE(all) << all.error().message();

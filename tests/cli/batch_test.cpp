@@ -51,7 +51,7 @@ class Batch : public Program {
   }
 
   Ran batch(const std::string& out, std::vector<std::string> more = {}) {
-    more.insert(more.begin(), {"batch", "r.toml", "-o", out});
+    more.insert(more.begin(), {"batch", "r.toml", "-o", out, "--no-review"});
     return run(more);
   }
 
@@ -147,7 +147,7 @@ TEST_F(Batch, AMergeTellsWhatIsMissing) {
 TEST_F(Batch, IsGoneOnWithAfterKill9AtAnyMoment) {
   write("r.toml", long_recipe());
   for (int i = 1; i <= 4; ++i) {
-    const pid_t child = start({"batch", "r.toml", "-o", "out", "-j", "2", "--resume"});
+    const pid_t child = start({"batch", "r.toml", "-o", "out", "-j", "2", "--resume", "--no-review"});
     EXPECT_TRUE(wait_for("out", static_cast<std::size_t>(12 * i)));
     usleep(static_cast<unsigned>(7000 * i));
     kill(child, SIGKILL);
@@ -317,7 +317,7 @@ TEST_F(Batch, TheTableOpensInASpreadsheet) {
 
 TEST_F(Batch, AFullDiskStopsItAndLosesNothing) {
   fs::create_directory(folder / "small");
-  if (mount("tmpfs", (folder / "small").c_str(), "tmpfs", 0, "size=400k") != 0)
+  if (mount("tmpfs", (folder / "small").c_str(), "tmpfs", 0, "size=100k") != 0)
     GTEST_SKIP() << "a small disk needs the right to mount one";
   const Ran full = batch("small/out", {"-j", "2"});
   EXPECT_EQ(full.status, 4);
@@ -344,6 +344,17 @@ TEST_F(Batch, RefusesBeforeAnythingIsMade) {
   expect_refused({"batch", "r.toml", "-o", "out", "--rejects", "r.toml"}, 2, "no list of verdicts");
   write("r.toml", "format = 1\ncharacters = [\"mannequin\"]\n[[matrix]]\nhti = [\"head\"]\n");
   expect_refused({"batch", "r.toml", "-o", "out"}, 2, "r.toml:4:1: unknown setting 'hti'");
+}
+
+TEST_F(Batch, EndsWithTheReviewPage) {
+  write(
+      "r.toml",
+      "format = 1\ncharacters = [\"mannequin\"]\n[settings]\nduration = 0.1\n[[reaction]]\nname = \"one\"\n");
+  EXPECT_EQ(run({"batch", "r.toml", "-o", "out"}).status, 0);
+  EXPECT_GT(fs::file_size(folder / "out/index.html"), 100u);
+  EXPECT_GT(fs::file_size(folder / "out/mannequin/one.png"), 10000u);
+  EXPECT_EQ(run({"batch", "r.toml", "-o", "without", "--no-review"}).status, 0);
+  EXPECT_FALSE(fs::exists(folder / "without/index.html"));
 }
 
 TEST_F(Batch, ARecipeCannotWriteOutsideTheFolder) {
