@@ -2,6 +2,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <csignal>
 #include <string>
@@ -30,7 +31,7 @@ struct BatchRequest {
   double memory_mb = 4096.0;
   double max_excess_deg = -1.0;
   bool dry_run = false;
-  bool page = true;
+  bool review = true;
   bool json = false;
   bool quiet = false;
 };
@@ -91,9 +92,6 @@ void declare(Options& options, BatchRequest& request) {
                  "reject reactions that leave the range of motion farther (before projection); status 1");
   options.flag("--reject-unsettled", settings.reject_unsettled,
                "reject reactions that do not come to rest; status 1");
-  options.on_off(
-      "review", request.page, [&request](bool on) { request.page = on; },
-      "make the review page, FOLDER/index.html; not of a shard", "leave it to ukemi review");
   options.group("workers");
   options.custom(
       "-j,--jobs", "N",
@@ -105,6 +103,9 @@ void declare(Options& options, BatchRequest& request) {
   options.number("--job-memory", "MB", request.memory_mb, Range{256.0, 1048576.0},
                  "address space of a worker; one that needs more loses its reaction, after a second try");
   options.group("out");
+  options.on_off(
+      "review", true, [&request](bool on) { request.review = on; },
+      "make the review page, index.html, once all is baked", "make none");
   options.flag("--json", request.json, "the manifest to stdout");
   options.flag("--quiet", request.quiet, "nothing to stdout, no progress");
 }
@@ -222,14 +223,15 @@ int report_stop(const BatchRequest& request, const BatchResult& result) {
   return 128 + g_stopped_by;
 }
 
-/// The page to judge the batch by. Errors: those of write_review.
-Status make_page(const BatchRequest& request) {
+/// The page over what was baked; a shard has none.
+Status make_page(const BatchRequest& request, const BatchResult& result) {
+  const bool has_any = std::any_of(result.entries.begin(), result.entries.end(),
+                                   [](const auto& entry) { return entry.record && entry.record->done(); });
+  if (!request.review || !request.settings.shard.whole() || !has_any) return Done{};
   Diagnostics diagnostics;
-  const auto review =
-      write_review(request.settings.folder, {request.settings.workers.workers}, diagnostics, {});
-  print_warnings(diagnostics);
-  if (!review) return review.error();
-  return Done{};
+  const auto review = write_review(request.settings.folder, {request.settings.workers.workers}, diagnostics);
+  if (!request.quiet) print_warnings(diagnostics);
+  return review ? Status(Done{}) : Status(review.error());
 }
 
 int run_planned(const BatchRequest& request, const BatchPlan& plan) {
@@ -245,8 +247,7 @@ int run_planned(const BatchRequest& request, const BatchPlan& plan) {
   }();
   if (!result) return print_error(result.error());
   if (result->stopped || result->cannot_write) return report_stop(request, *result);
-  if (request.page && request.settings.shard.whole())
-    if (const Status made = make_page(request); !made) return print_error(made.error());
+  if (const Status status = make_page(request, *result); !status) return print_error(status.error());
   const bool all_well = count(*result, ReactionStatus::done) == result->entries.size();
   const int status = all_well ? 0 : 1;
   if (request.quiet) return status;
