@@ -81,7 +81,9 @@ TEST(Workers, ACrashCostsItsJobAlone) {
     EXPECT_EQ(ends.by_job.at(2).answer, "did b");
     EXPECT_EQ(ends.by_job.at(3).answer, "did c");
     EXPECT_EQ(ends.by_job.at(1).answer, "");
-    if (workers == 1) EXPECT_EQ(ends.all.back().job, 1u) << "tried again after the others";
+    if (workers == 1) {
+      EXPECT_EQ(ends.all.back().job, 1u) << "tried again after the others";
+    }
 #ifndef __SANITIZE_ADDRESS__
     EXPECT_EQ(ends.by_job.at(1).failure, "crashed: signal 11 (Segmentation fault): something is wrong");
 #endif
