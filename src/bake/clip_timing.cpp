@@ -252,6 +252,7 @@ void play_extra_bones(const Character& character, BakeOutcome& outcome) {
   mark_with_ancestors(outcome.humanoid.root);
   for (const SegmentNodes& segment : outcome.humanoid.segments)
     for (const int node : segment.chain) mark_with_ancestors(node);
+  for (const TwistBone& bone : outcome.humanoid.twist_bones) carries[bone.node] = true;
   Clip& clip = outcome.clip;
   for (std::size_t f = 1; f < clip.frames.size(); ++f) {
     const Pose unhit = unhit_pose(skeleton, outcome.start, static_cast<double>(f) / clip.fps);

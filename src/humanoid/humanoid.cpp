@@ -3,6 +3,7 @@
 #include "humanoid/assemble.h"
 #include "humanoid/bones.h"
 #include "humanoid/frames.h"
+#include "humanoid/twist.h"
 
 namespace ukemi {
 
@@ -27,6 +28,7 @@ Result<Humanoid> humanoid_of(const Character& character, const Bones& bones, con
   Humanoid humanoid;
   assemble(character, bones, humanoid);
   if (Status status = find_frames(character, options, humanoid, diagnostics); !status) return status.error();
+  humanoid.twist_bones = find_twist_bones(character.skeleton, humanoid);
   return humanoid;
 }
 

@@ -28,6 +28,16 @@ struct SegmentNodes {
   int node() const { return chain.empty() ? -1 : chain.back(); }
 };
 
+/// A bone along a limb that spreads its twist: at the joint above none of it, at the next joint all.
+struct TwistBone {
+  int node = -1;
+  Segment segment = Segment::upperarm_l;
+  double share = 0.5;  // of the segment's twist against the one above
+};
+
+/// The segment at the far end of an upper arm, forearm, thigh or shank.
+Segment limb_end(Segment limb);
+
 enum class RestPoseClass { t_pose, a_pose, neutral, other };
 std::string_view name(RestPoseClass pose);  // "T", "A", "neutral", "other"
 
@@ -62,6 +72,7 @@ struct Humanoid {
   PerSegment<Quat> node_from_segment;
   /// Origin of a fused segment in the node of the segment it moves with (see carrier); zero for the others.
   PerSegment<Vec3> fused_origin{};
+  std::vector<TwistBone> twist_bones;  // parents first
   /// Further nodes that shapes and poses need; -1 where there are none.
   int head_top = -1;
   std::array<int, 2> toes{-1, -1};           // left, right
@@ -95,8 +106,9 @@ BodyPose segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const P
 BodyPose canonical_segments_of(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose);
 
 /// Poses the skeleton: `base`, with every segment turned and the pelvis (and detached segments) moved by what
-/// takes `from` (the segments of `base`) to `to`. Nodes of no segment keep their local transform. Inverse of
-/// segments_of for single-node chains and uniform scales, negative and mirrored ones included.
+/// takes `from` (the segments of `base`) to `to`. Twist bones take their share of the twist; other nodes of
+/// no segment keep their local transform. Inverse of segments_of for single-node chains and uniform scales,
+/// negative and mirrored ones included.
 Pose pose_skeleton(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& base, const BodyPose& from,
                    const BodyPose& to);
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "humanoid/humanoid.h"
+#include "humanoid/twist.h"
 
 namespace ukemi {
 namespace {
@@ -35,6 +36,14 @@ std::vector<NodeMotion> motions_of(const Skeleton& skeleton, const Humanoid& hum
           k + 1 == nodes.chain.size() ? turn : parent_turn.slerp((static_cast<double>(k) + 1.0) / n, turn);
       motion.moves = nodes.detached && k == 0;
     }
+  }
+  for (const TwistBone& bone : humanoid.twist_bones) {
+    const Quat above = turn_of(from, to, humanoid.carrier(parent_of(bone.segment)));
+    const Quat relative = (above.conjugate() * turn_of(from, to, bone.segment)).normalized();
+    const Vec3 limb = from[index(limb_end(bone.segment))].translation - from[index(bone.segment)].translation;
+    if (limb.norm() < 1e-9) continue;
+    motions[bone.node] = {true, false, above * with_less_twist(relative, limb.normalized(), 1.0 - bone.share),
+                          bone.segment};
   }
   if (humanoid.root >= 0)
     motions[humanoid.root] = {true, true, turn_of(from, to, Segment::pelvis), Segment::pelvis};

@@ -297,6 +297,38 @@ Variant with_twists() {
   return v;
 }
 
+// A forearm that turns by 80 degrees about itself: the skin half-way along it turns by 40, that at the wrist
+// by nearly all; a bend moves them all alike.
+TEST(Variant, TwistBonesTakeTheirShareOfTheTwist) {
+  Variant variant = with_twists();
+  const Character character = variant.finish();
+  Diagnostics diagnostics;
+  const auto humanoid = map_humanoid(character, {}, diagnostics);
+  ASSERT_TRUE(humanoid) << humanoid.error().message();
+  ASSERT_EQ(humanoid->twist_bones.size(), 16u);
+  const Skeleton& skeleton = character.skeleton;
+  const Pose base = rest_pose(skeleton);
+  const BodyPose from = segments_of(skeleton, *humanoid, base);
+  constexpr int fore = index(Segment::forearm_l), hand = index(Segment::hand_l);
+  const Vec3 limb = (from[hand].translation - from[fore].translation).normalized();
+  for (const Quat& bend : {Quat::Identity(), exp_rotation(1.2 * limb.unitOrthogonal())}) {
+    BodyPose to = from;
+    to[fore].rotation = bend * exp_rotation(radians(80.0) * limb) * from[fore].rotation;
+    to[hand].rotation = bend * exp_rotation(radians(80.0) * limb) * from[hand].rotation;
+    const Pose pose = pose_skeleton(skeleton, *humanoid, base, from, to);
+    const auto before = world_transforms(skeleton, base), after = world_transforms(skeleton, pose);
+    const auto off = [&](const char* name, double turned_deg) {
+      const int node = skeleton.find(name);
+      const Quat turn(rotation_part(after[node].linear() * before[node].linear().inverse()));
+      return degrees(angle_between(turn, bend * exp_rotation(radians(turned_deg) * limb)));
+    };
+    EXPECT_LT(off("LeftForeArm", 80.0), 1e-6);
+    EXPECT_LT(off("LeftForeArmTwist", 40.0), 0.1);
+    EXPECT_LT(off("LeftForeArmTwist1", 64.0), 0.1);
+    EXPECT_LT(off("LeftHand", 80.0), 1e-6);
+  }
+}
+
 TEST(Variant, OfHelpersAndTwins) {
   expect_human("twist bones", with_twists());
   Variant inline_roll;
