@@ -5,6 +5,8 @@ import { degrees, directionOf, excessOf, idOf, metres, seconds, summaryOf, troub
 import { theStage } from './stage.js';
 
 const HOVER_MS = 140;
+const SLOW_FRAME_MS = 300; // of so many in a row: cards play no more, the machine draws too slowly for it
+const SLOW_FRAMES = 4;
 const calm = window.matchMedia('(prefers-reduced-motion: reduce)');
 
 /// Where the blow comes from, seen from above with the figure looking down the page.
@@ -112,7 +114,7 @@ export class Grid extends EventTarget {
   // ---- the clip that plays on its card
 
   previewSoon(card) {
-    if (calm.matches || !card.reaction.clip || this.previewed === card) return;
+    if (calm.matches || this.tooSlow || !card.reaction.clip || this.previewed === card) return;
     this.endPreview();
     this.previewed = card;
     this.timer = setTimeout(() => this.preview(card), HOVER_MS);
@@ -127,8 +129,17 @@ export class Grid extends EventTarget {
     stage.show(card.picture, [motion], { interactive: false });
     stage.frame();
     const begin = performance.now();
+    let last = begin;
+    let slow = 0;
     const tick = (now) => {
       if (this.previewed !== card || stage.canvas.parentElement !== card.picture) return;
+      slow = now - last > SLOW_FRAME_MS ? slow + 1 : 0;
+      last = now;
+      if (slow >= SLOW_FRAMES) {
+        this.tooSlow = true;
+        this.endPreview();
+        return;
+      }
       stage.seek(((now - begin) / 1000) % (motion.duration + 0.5));
       requestAnimationFrame(tick);
     };

@@ -38,8 +38,8 @@ class Scene {
     this.sky = new THREE.HemisphereLight(0xffffff, 0xcbbda9, 1.9);
     this.key = new THREE.DirectionalLight(0xfff6ea, 2.5);
     this.key.castShadow = true;
-    this.key.shadow.mapSize.set(2048, 2048);
-    this.key.shadow.radius = 6;
+    this.key.shadow.mapSize.set(1024, 1024);
+    this.key.shadow.radius = 3;
     this.key.shadow.bias = -0.0004;
     this.key.shadow.normalBias = 0.02;
     Object.assign(this.key.shadow.camera, { left: -2.6, right: 2.6, top: 2.6, bottom: -2.6, near: 0.5, far: 14 });
