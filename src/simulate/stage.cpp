@@ -31,6 +31,13 @@ Quat facing(const Vec3& along) {
   return Quat(axes).normalized();
 }
 
+/// Height of the probe's centre when it lies on the floor, m.
+double height_on_floor(dGeomID probe) {
+  dReal box[6];
+  dGeomGetAABB(probe, box);
+  return dGeomGetPosition(probe)[1] - box[2];
+}
+
 }  // namespace
 
 Stage::Stage(OdeWorld& world, Model& model, Collision& collision, const Scene& scene, double gravity)
@@ -53,6 +60,23 @@ void Stage::begin(Diagnostics& diagnostics) {
   }
 }
 
+/// A line that leads into the floor is raised until the probe, where it first touches the body, is clear of
+/// it.
+std::optional<Stage::Meeting> Stage::meet(dGeomID probe, Vec3 start) const {
+  constexpr int kTries = 12;
+  const Vec3& along = scene_.direction;
+  std::optional<Meeting> meeting;
+  for (int i = 0; i < kTries; ++i) {
+    const auto touch = collision_.first_touch(probe, start, along, kReach);
+    if (!touch) break;
+    meeting = Meeting{start + (touch->distance + kTouchDepth) * along, touch->segment};
+    const double missing = height_on_floor(probe) - meeting->at.y();
+    if (missing <= 0.0) break;
+    start.y() += missing + kTouchDepth;
+  }
+  return meeting;
+}
+
 /// Aimed at the target's centre, or beside it by the scene's offset; where another segment is in the way the
 /// aim moves away from it, by at most the missile's radius.
 Vec3 Stage::aim(dGeomID probe, Diagnostics& diagnostics) const {
@@ -60,20 +84,18 @@ Vec3 Stage::aim(dGeomID probe, Diagnostics& diagnostics) const {
   const Vec3& along = scene_.direction;
   const Vec3 centre = vec3(dBodyGetPosition(target().id)) + scene_.aim_offset;
   const Vec3 start = centre - kReach * along;
-  const auto first = collision_.first_touch(probe, start, along, kReach);
+  const auto first = meet(probe, start);
   if (!first) return centre;
-  if (first->segment != scene_.target) {
-    const Vec3 away = centre - vec3(dBodyGetPosition(model_.bodies()[model_.body_of(first->segment)].id));
-    const Vec3 aside = (away - along.dot(away) * along).normalized();
-    for (int i = 1; i <= kTries; ++i) {
-      const Vec3 moved = start + scene_.ball_radius_m * i / kTries * aside;
-      const auto touch = collision_.first_touch(probe, moved, along, kReach);
-      if (touch && touch->segment == scene_.target) return moved + (touch->distance + kTouchDepth) * along;
-    }
-    diagnostics.warn(std::string(name(scene_.target)),
-                     fmt::format("the blow meets the {} first", name(first->segment)));
+  if (first->segment == scene_.target) return first->at;
+  const Vec3 away = centre - vec3(dBodyGetPosition(model_.bodies()[model_.body_of(first->segment)].id));
+  const Vec3 aside = (away - along.dot(away) * along).normalized();
+  for (int i = 1; i <= kTries; ++i) {
+    const auto other = meet(probe, start + scene_.ball_radius_m * i / kTries * aside);
+    if (other && other->segment == scene_.target) return other->at;
   }
-  return start + (first->distance + kTouchDepth) * along;
+  diagnostics.warn(std::string(name(scene_.target)),
+                   fmt::format("the blow meets the {} first", name(first->segment)));
+  return first->at;
 }
 
 void Stage::launch(dGeomID geom, const Vec3& at, const Vec3& velocity, const Vec3& angular_velocity,

@@ -1,6 +1,7 @@
 // What happens to the body: a ball, a box, a ramp with a ball, a push, an impulse, a fall.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "simulate/collision.h"
@@ -39,6 +40,12 @@ class Stage {
   void begin_slope(Diagnostics& diagnostics);
   void begin_impulse();
   void begin_fall();
+  /// Where the probe's centre is when it first touches the body, and what it touches.
+  struct Meeting {
+    Vec3 at;
+    Segment segment;
+  };
+  std::optional<Meeting> meet(dGeomID probe, Vec3 start) const;
   /// Where the probe's centre is when it first touches the body; aside from what is in the way, see the
   /// definition.
   Vec3 aim(dGeomID probe, Diagnostics& diagnostics) const;

@@ -108,7 +108,7 @@ TEST(RandomHits, KeepTheMannequinHumanWithDefaultSettings) {
   Diagnostics diagnostics;
   const auto prepared = prepare_bake(mannequin(), BakeSettings{}, diagnostics);
   ASSERT_TRUE(prepared) << prepared.error().message();
-  const std::vector<RandomHit> hits = random_hits(7, kHitsOnTheMannequin);
+  const std::vector<RandomHit> hits = random_hits(CompareSettings{}.seed, kHitsOnTheMannequin);
   const Quat& pelvis = prepared->start.segments[index(Segment::pelvis)].rotation;
   std::vector<std::optional<Trial>> trials(hits.size());
   std::atomic<std::size_t> next = 0;

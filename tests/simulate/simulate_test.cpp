@@ -310,6 +310,26 @@ TEST(Simulate, AFastSmallBallDoesNotPassThroughAForearm) {
   EXPECT_LT(result.trajectory.frames.back()[index(Segment::hand_r)].translation.x(), -0.02);
 }
 
+TEST(Simulate, WhatHitsAFootComesAboveTheFloor) {
+  const StandingMan man;
+  Scene scene;
+  scene.target = Segment::foot_r;
+  scene.ball_mass_kg = 9.6;
+  scene.ball_radius_m = 0.15;
+  SimulationSettings settings;
+  settings.duration_s = 0.5;
+  for (const SceneKind kind : {SceneKind::ball, SceneKind::box})
+    for (const double elevation : {-15.0, 0.0, 15.0}) {
+      SCOPED_TRACE(elevation);
+      scene.kind = kind;
+      scene.direction =
+          Vec3(-std::cos(radians(elevation)), -std::sin(radians(elevation)), 0.0);  // from the front
+      const auto result = run(man, scene, settings);
+      EXPECT_GE(result.trajectory.props[0].poses[0].translation.y(), scene.ball_radius_m);
+      EXPECT_LT(result.figures.energy_gain_max_j, 1.0) << "a floor that pushes it out does work";
+    }
+}
+
 TEST(Simulate, ABoxSlidesIn) {
   const StandingMan man;
   Scene scene;
