@@ -445,7 +445,8 @@ Settings out_settings() {
           "numbers of a glTF clip's rotations; int16 halves them, within the same error",
           [](auto& s) -> auto& { return s.keys.short_rotations; }),
       on_off<S>(
-          "clip-only", "glTF without the mesh", [](auto& s) -> auto& { return s.clip_only; }),
+          "clip-only", "glTF of skeleton and clip, without the mesh",
+          [](auto& s) -> auto& { return s.clip_only; }),
       with_unset(
           choice<S, std::optional<double>>(
               "bvh-unit", {{"cm", 0.01}, {"m", 1.0}}, "length unit of a BVH that does not come from a BVH",

@@ -39,7 +39,7 @@ ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Simila
                         const KeyReduction& settings);
 
 struct GltfOptions {
-  bool clip_only = false;   // nodes and animation without meshes, skins, materials, images, extensions
+  bool clip_only = false;   // nodes, skins and animation without meshes, materials, images, extensions
   std::string extras_json;  // written as the animation's "extras" when not empty
   /// Where the file will lie. Links of a .gltf to files beside it are kept when this is the source's folder;
   /// otherwise (and when not given) what they link to is embedded.

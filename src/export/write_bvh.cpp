@@ -252,10 +252,24 @@ std::vector<BvhJoint> own_joints(const Character& character, const Humanoid& hum
   return joints;
 }
 
+/// The reference pose with the lengths that the bones have in the clip, which started perhaps from a moment
+/// of another motion.
+Pose zero_pose(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& first) {
+  const bool has_reference = humanoid.reference.size() == skeleton.nodes.size();
+  Pose pose = has_reference ? humanoid.reference : rest_pose(skeleton);
+  std::vector<bool> moves(skeleton.nodes.size(), false);
+  for (const SegmentNodes& segment : humanoid.segments)
+    if (segment.detached) moves[segment.chain.front()] = true;
+  for (int i = 0; i < skeleton.size(); ++i) {
+    pose[i].scale = first[i].scale;
+    if (!moves[i] && skeleton.is_ancestor(humanoid.root, i)) pose[i].translation = first[i].translation;
+  }
+  return pose;
+}
+
 BvhFile own_file(const Character& character, const Humanoid& humanoid, const Clip& clip, double unit_m) {
   const Skeleton& skeleton = character.skeleton;
-  const bool has_reference = humanoid.reference.size() == skeleton.nodes.size();
-  const Pose reference = has_reference ? humanoid.reference : rest_pose(skeleton);
+  const Pose reference = zero_pose(skeleton, humanoid, clip.frames.front());
   const std::vector<Quat> zero = world_rotations(skeleton, humanoid, reference);
   std::vector<ChosenNode> chosen;
   choose(chosen_parents(skeleton, humanoid), {humanoid.root, -1}, chosen);

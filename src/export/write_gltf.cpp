@@ -198,14 +198,22 @@ Status open_for_gltf(Edit& edit, const Character& character, bool keep_links) {
 // ---- the document's nodes
 // ------------------------------------------------------------------------------------
 
-/// Leaves the nodes with their transforms, names and extras.
+/// Leaves the nodes with their transforms, names and extras, and the skins, without their matrices. What held
+/// nothing but what is left out says so: a node that holds nothing at all is taken for a mistake.
 void keep_skeleton_only(Json& json) {
-  for (const char* key :
-       {"meshes", "skins", "materials", "textures", "images", "samplers", "animations", "accessors",
-        "bufferViews", "buffers", "extensions", "extensionsUsed", "extensionsRequired"})
+  for (const char* key : {"meshes", "materials", "textures", "images", "samplers", "animations", "accessors",
+                          "bufferViews", "buffers", "extensions", "extensionsUsed", "extensionsRequired"})
     json.erase(key);
-  for (Json& node : json["nodes"])
-    for (const char* key : {"mesh", "skin", "weights", "extensions"}) node.erase(key);
+  for (Json& node : json["nodes"]) {
+    std::string left_out;
+    for (const char* key : {"mesh", "skin", "weights", "extensions"})
+      if (node.erase(key) > 0 && left_out.empty()) left_out = key;
+    const bool is_empty = !node.contains("children") && !node.contains("camera") && !node.contains("extras");
+    if (is_empty && !left_out.empty()) node["extras"]["ukemi"]["left_out"] = left_out;
+  }
+  if (json.contains("skins"))
+    for (Json& skin : json["skins"])
+      for (const char* key : {"inverseBindMatrices", "extensions"}) skin.erase(key);
 }
 
 /// Only nodes without a matrix can be animated.
@@ -263,6 +271,25 @@ std::size_t add_inverse_binds(Edit& edit, const std::vector<Affine>& inverse_bin
   for (const Affine& matrix : inverse_bind)
     for (int i = 0; i < 16; ++i) values.push_back(static_cast<float>(matrix.matrix()(i % 4, i / 4)));
   return add_accessor(edit, add_view(edit, values), 0, kFloat, inverse_bind.size(), "MAT4");
+}
+
+/// Skins without a mesh: importers take the nodes of a skin, and no others, for the bones of one armature. Of
+/// those with the same joints the last one tells importers the bind pose.
+void add_bare_skins(Edit& edit, const Character& character, const Humanoid& humanoid) {
+  Json skins = Json::array();
+  if (character.format == SourceFormat::bvh) {
+    skins.push_back({{"joints", character.skeleton.order}});
+    skins[0]["inverseBindMatrices"] = add_inverse_binds(edit, make_figure(character, humanoid).inverse_bind);
+  }
+  const Json all = edit.json.value("skins", Json::array());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto same_joints = [&](const Json& other) { return other["joints"] == all[i]["joints"]; };
+    if (std::any_of(all.begin() + static_cast<std::ptrdiff_t>(i) + 1, all.end(), same_joints)) continue;
+    skins.push_back(all[i]);
+    skins.back()["inverseBindMatrices"] = add_inverse_binds(edit, character.skins.at(i).inverse_bind);
+  }
+  edit.json.erase("skins");
+  if (!skins.empty()) edit.json["skins"] = std::move(skins);
 }
 
 /// Accessor of one value per vertex.
@@ -494,6 +521,7 @@ Result<Edit> edited(const Character& character, const Humanoid& humanoid, const 
     bare.path = character.path;
     bare.document.is_glb = character.document.is_glb;
     if (const Status status = open(edit, bare, true); !status) return status.error();
+    add_bare_skins(edit, character, humanoid);
   } else if (const Status status = open(edit, character, keep_links); !status) {
     return status.error();
   }

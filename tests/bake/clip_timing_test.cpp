@@ -129,6 +129,57 @@ TEST(Recovery, ToAClipNeedsOne) {
   EXPECT_EQ(outcome.error().what, "--to clip needs a start clip to go back to");
 }
 
+/// The mannequin with a thumb that turns steadily, 1 rad/s, in its clip "walk".
+Character with_turning_thumb(int& thumb) {
+  Character character = mannequin();
+  thumb = character.skeleton.find("LeftHandThumb1");
+  for (Animation& animation : character.animations) {
+    if (animation.name != "walk") continue;
+    std::erase_if(animation.tracks, [&](const Track& track) { return track.node == thumb; });
+    const double half = 0.5 * animation.end_s;
+    animation.tracks.push_back({thumb,
+                                TrackPath::rotation,
+                                Interpolation::linear,
+                                {0.0, animation.end_s},
+                                {0, 0, 0, 1, std::sin(half), 0, 0, std::cos(half)}});
+  }
+  return character;
+}
+
+BakeOutcome baked_from_walk(const Character& character, bool extra_bones_play) {
+  BakeSettings settings = flinch();
+  settings.clip = "walk";
+  settings.at_s = 0.2;
+  settings.lead_s = 0.1;
+  settings.extra_bones_play = extra_bones_play;
+  Diagnostics diagnostics;
+  auto outcome = bake(character, settings, diagnostics);
+  EXPECT_TRUE(outcome) << outcome.error().message();
+  return std::move(*outcome);
+}
+
+TEST(ExtraBones, HoldWhatTheyHaveAtTheImpactOrPlayTheStartClipOn) {
+  int thumb = -1;
+  const Character character = with_turning_thumb(thumb);
+  const auto held = baked_from_walk(character, false).clip.frames;
+  const auto played = baked_from_walk(character, true).clip.frames;
+  ASSERT_EQ(held.size(), played.size());
+  const std::size_t impact = 6;
+  ASSERT_GT(held.size(), impact + 20);
+  for (std::size_t f = 0; f < held.size(); ++f) {
+    const double clip_s = 0.1 + static_cast<double>(f) / 60.0;
+    const auto turned_to = [&](double angle) { return Quat(Eigen::AngleAxisd(angle, Vec3::UnitX())); };
+    const auto off = [&](const Pose& pose, double angle) {
+      return angle_between(pose[thumb].rotation, turned_to(angle));
+    };
+    EXPECT_LT(off(held[f], std::min(clip_s, 0.2)), 1e-6) << f;
+    EXPECT_LT(off(played[f], clip_s), 1e-6) << f;
+    for (const SegmentNodes& segment : plain().humanoid.segments)
+      for (const int node : segment.chain)
+        EXPECT_EQ(held[f][node].rotation.coeffs(), played[f][node].rotation.coeffs()) << f << ' ' << node;
+  }
+}
+
 TEST(Facing, OfLyingBodiesIsTowardsFeetOnTheBackAndHeadOnTheBelly) {
   const auto turned = [](double angle) { return Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())); };
   EXPECT_NEAR(facing(Quat::Identity()), 0.0, 1e-12);

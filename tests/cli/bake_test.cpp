@@ -1,5 +1,8 @@
 // Bakes of the program's own character, and of characters made by others where UKEMI_EXTRA_DATA names them.
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "program.h"
@@ -206,6 +209,40 @@ TEST_F(Bake, IsReadBackByTheOtherCommands) {
   EXPECT_EQ(read("a.png").substr(1, 3), "PNG");
   succeed({"render", "a.bvh", "--shapes", "-o", "b.png"});
   EXPECT_EQ(files(), (std::vector<std::string>{"a.bvh", "a.glb", "a.png", "b.png"}));
+}
+
+/// A .gltf whose buffer and image lie beside it.
+void write_linked(const fs::path& folder) {
+  fs::create_directory(folder);
+  std::ifstream source(std::string(UKEMI_ASSETS_FOLDER) + "/characters/mannequin.glb", std::ios::binary);
+  const std::string glb{std::istreambuf_iterator<char>(source), {}};
+  std::uint32_t length = 0;
+  std::memcpy(&length, glb.data() + 12, 4);
+  auto json = nlohmann::ordered_json::parse(glb.substr(20, length));
+  json["buffers"][0]["uri"] = "my%20figure.bin";
+  json["images"] = {{{"uri", "skin.png"}}};
+  std::ofstream(folder / "figure.gltf") << json.dump();
+  std::ofstream(folder / "my figure.bin", std::ios::binary) << glb.substr(28 + length);
+  std::ofstream(folder / "skin.png", std::ios::binary) << "\x89PNG\r\n\x1a\n";
+}
+
+TEST_F(Bake, OfALinkedGltfIsWholeInAnotherFolderAndKeepsItsLinksInItsOwn) {
+  write_linked(folder / "in");
+  fs::create_directory(folder / "out");
+  succeed({"bake", "in/figure.gltf", "-o", "in/hit.gltf", "-o", "out/hit.gltf", "-o", "out/hit.glb"});
+  const Json beside = Json::parse(read("in/hit.gltf"));
+  EXPECT_EQ(beside["buffers"][0]["uri"], "my%20figure.bin");
+  EXPECT_EQ(beside["images"][0]["uri"], "skin.png");
+  succeed({"inspect", "in/hit.gltf"});
+  const Json elsewhere = Json::parse(read("out/hit.gltf"));
+  EXPECT_EQ(elsewhere["buffers"][0]["uri"].get<std::string>().rfind("data:", 0), 0u);
+  EXPECT_EQ(elsewhere["images"][0]["uri"].get<std::string>().rfind("data:image/png", 0), 0u);
+  fs::remove_all(folder / "in");
+  for (const char* file : {"out/hit.gltf", "out/hit.glb"}) {
+    const Json inspection = Json::parse(succeed({"inspect", file, "--json"}));
+    EXPECT_EQ(inspection["verdict"], "humanoid") << file;
+    EXPECT_EQ(inspection["clips"].back()["name"], "chest_front") << file;
+  }
 }
 
 TEST_F(Bake, OtherBlowsGiveOtherClips) {

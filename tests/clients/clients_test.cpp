@@ -1,5 +1,5 @@
 // What other programs make of our files: the Khronos validator finds no issue that the source does not have,
-// and three.js plays every clip with each joint where we have it.
+// and three.js and Blender play every clip with each joint where we have it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "bake/bake.h"
+#include "bake/start.h"
 #include "base/files.h"
 #include "export/export.h"
 #include "load/load.h"
@@ -41,6 +43,24 @@ constexpr std::array kFurther{"characters/quaternius_glb/modular_men/Casual.glb"
                               "mocap/cmu_bvh/cmu_12_01_walk.bvh",
                               "mocap/other_bvh/makehuman/walk1.bvh"};
 
+/// Of kFurther: a VRM of each version and an FBX.
+constexpr std::array kForOptions{"basic_armature.vrm", "basic_armature_vrm1.vrm", "Male_Casual.fbx"};
+
+/// Each option that changes what a glTF output holds; every file gets a second reaction by --append.
+constexpr std::array<std::pair<const char*, void (*)(BakeSettings&)>, 11> kOptions{{
+    {"default", [](BakeSettings&) {}},
+    {"clip-only", [](BakeSettings& s) { s.clip_only = true; }},
+    {"align", [](BakeSettings& s) { s.align = true; }},
+    {"extra-bones_clip", [](BakeSettings& s) { s.extra_bones_play = true; }},
+    {"root-motion_root", [](BakeSettings& s) { s.root_motion = RootMotion::root; }},
+    {"root-motion_in-place", [](BakeSettings& s) { s.root_motion = RootMotion::in_place; }},
+    {"additive", [](BakeSettings& s) { s.additive = true; }},
+    {"rotation-type_int16", [](BakeSettings& s) { s.keys.short_rotations = true; }},
+    {"recover", [](BakeSettings& s) { s.recover_s = 0.3; }},
+    {"lead", [](BakeSettings& s) { s.lead_s = 0.25; }},
+    {"keys_all", [](BakeSettings& s) { s.keys.enabled = false; }},
+}};
+
 /// The program's output and exit status.
 std::pair<std::string, int> run(const std::string& command) {
   std::string output;
@@ -52,30 +72,6 @@ std::pair<std::string, int> run(const std::string& command) {
   return {output, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
 }
 
-/// Every segment turns about the joint above it.
-BodyPose swayed(const BodyPose& start, double t) {
-  BodyPose now = start;
-  for (int s = 0; s < kSegmentCount; ++s) {
-    const Vec3 axis = Vec3(std::sin(1.0 + s), std::cos(2.0 * s), std::sin(3.0 * s)).normalized();
-    now[s].rotation = exp_rotation(axis * (0.6 * std::sin(2 * t + s))) * start[s].rotation;
-    const int parent = index(parent_of(segment_at(s)));
-    if (s == parent)
-      now[s].translation += Vec3(0.2 * t, 0.1 * std::sin(t), 0);
-    else
-      now[s].translation = now[parent] * (start[parent].inverse() * start[s].translation);
-  }
-  return now;
-}
-
-Clip swaying_clip(const Character& character, const Humanoid& humanoid) {
-  Clip clip{"ukemi sway", 30.0, {}, {}};
-  const BodyPose start = segments_of(character.skeleton, humanoid, humanoid.reference);
-  for (int f = 0; f <= 60; ++f)
-    clip.frames.push_back(
-        pose_skeleton(character.skeleton, humanoid, humanoid.reference, start, swayed(start, f / clip.fps)));
-  return clip;
-}
-
 class Clients : public testing::Test {
  protected:
   Clients() : folder_(fs::temp_directory_path() / fmt::format("ukemi_clients_{}", getpid())) {
@@ -83,79 +79,135 @@ class Clients : public testing::Test {
   }
   ~Clients() override { fs::remove_all(folder_); }
 
-  static bool installed() {
+  static bool has_packages() {
     return fs::exists(fs::path(UKEMI_CLIENTS_FOLDER) / "node_modules" / "gltf-validator");
+  }
+  static bool has_blender() {
+    return run("blender --background --python-exit-code 1 --python-expr 'import numpy'").second == 0;
   }
   static std::vector<fs::path> own_sources() {
     const fs::path characters = fs::path(UKEMI_ASSETS_FOLDER) / "characters";
     return {characters / "mannequin.glb", characters / "mannequin.bvh"};
   }
+  static std::vector<fs::path> further_sources() {
+    std::vector<fs::path> sources;
+    const char* data = std::getenv("UKEMI_EXTRA_DATA");
+    for (const char* file : kFurther)
+      if (data != nullptr && fs::exists(fs::path(data) / file)) sources.push_back(fs::path(data) / file);
+    return sources;
+  }
 
-  /// Writes every format of every source and lists what the scripts shall look at.
-  void write(const std::vector<fs::path>& sources) {
+  static Character loaded(const fs::path& source) {
+    Diagnostics diagnostics;
+    auto character = load_character(source, {}, diagnostics);
+    EXPECT_TRUE(character) << character.error().message();
+    return character ? std::move(*character) : Character{};
+  }
+  /// Bakes and writes; false, and the test has failed, when that fails.
+  static bool write(const Character& character, const BakeSettings& settings, BakedFile& baked) {
+    Diagnostics diagnostics;
+    auto made = bake_loaded(character, settings, diagnostics);
+    EXPECT_TRUE(made) << made.error().message();
+    if (!made) return false;
+    baked = std::move(*made);
+    const Status written = write_files(baked);
+    EXPECT_TRUE(written) << written.error().message();
+    return bool(written);
+  }
+
+  /// Bakes every format of every source and lists what the scripts shall look at.
+  void bake_all(const std::vector<fs::path>& sources, bool clip_only = false) {
     for (const fs::path& source : sources) {
       SCOPED_TRACE(source.string());
-      Diagnostics diagnostics;
-      const auto character = load_character(source, {}, diagnostics);
-      ASSERT_TRUE(character) << character.error().message();
-      const auto humanoid = map_humanoid(*character, {}, diagnostics);
-      ASSERT_TRUE(humanoid) << humanoid.error().message();
-      write(source, *character, *humanoid);
+      const fs::path base = folder_ / (std::to_string(validated_.size()) + '_' + source.stem().string());
+      BakeSettings settings;
+      for (const char* extension : {".glb", ".gltf", ".bvh"})
+        settings.outputs.push_back(fs::path(base) += extension);
+      settings.clip_only = clip_only;
+      const Character character = loaded(source);
+      BakedFile baked;
+      if (!write(character, settings, baked)) continue;
+      validate(source, character, settings.outputs);
+      play_glb(settings.outputs[0], character, baked);
+      play_bvh(settings.outputs[2], character, baked.outcome);
     }
   }
 
-  void write(const fs::path& source, const Character& character, const Humanoid& humanoid) {
-    const Clip clip = swaying_clip(character, humanoid);
-    const ReducedClip reduced =
-        reduce_keys(character.skeleton, clip, humanoid.world_from_file, {true, 0.0005});
-    const fs::path base = folder_ / (std::to_string(list_.size()) + '_' + source.stem().string());
-    const fs::path glb = fs::path(base) += ".glb";
-    const fs::path gltf = fs::path(base) += ".gltf";
-    const fs::path bvh = fs::path(base) += ".bvh";
-    const auto glb_bytes = write_glb(character, humanoid, reduced, {});
-    ASSERT_TRUE(glb_bytes) << glb_bytes.error().message();
-    ASSERT_TRUE(write_file(glb, *glb_bytes));
-    const auto gltf_text = write_gltf(character, humanoid, reduced, {});
-    ASSERT_TRUE(gltf_text) << gltf_text.error().message();
-    ASSERT_TRUE(write_file(gltf, *gltf_text));
-    const BvhOptions centimetres;
-    const auto bvh_text = write_bvh(character, humanoid, clip, centimetres);
-    ASSERT_TRUE(bvh_text) << bvh_text.error().message();
-    ASSERT_TRUE(write_file(bvh, *bvh_text));
-
-    const std::string name = source.filename().string();
+  void validate(const fs::path& source, const Character& character, const std::vector<fs::path>& outputs) {
     const bool is_gltf = character.format == SourceFormat::gltf;
-    for (const fs::path& after : {glb, gltf}) {
-      Json item{{"name", name + " to " + after.extension().string()},
+    for (const fs::path& after : {outputs[0], outputs[1]}) {
+      Json item{{"name", source.filename().string() + " to " + after.extension().string()},
                 {"before", nullptr},
                 {"after", after.string()}};
       if (is_gltf) item["before"] = source.string();
-      // assimp's scenes keep skinned meshes below other nodes, nodes that hold nothing and coordinates of
-      // textures that are not there.
-      if (!is_gltf)
-        item["allowed"] = {"NODE_SKINNED_MESH_NON_ROOT", "NODE_EMPTY", "NODE_SKINNED_MESH_LOCAL_TRANSFORMS",
-                           "UNUSED_OBJECT"};
-      list_.push_back(item);
+      item["allowed"] = allowed_for(character);
+      validated_.push_back(item);
     }
-    play_glb(name, glb, character, humanoid, reduced);
-    play_bvh(name, bvh, character, humanoid, clip, centimetres);
+  }
+
+  /// What the validator may find new in a file whose source is no glTF: assimp's scenes keep skinned meshes
+  /// below other nodes, nodes that hold nothing and coordinates of textures that are not there.
+  static Json allowed_for(const Character& character) {
+    if (character.format == SourceFormat::gltf) return Json::array();
+    return {"NODE_SKINNED_MESH_NON_ROOT", "NODE_EMPTY", "NODE_SKINNED_MESH_LOCAL_TRANSFORMS",
+            "UNUSED_OBJECT"};
+  }
+
+  static std::vector<fs::path> sources_for_options() {
+    std::vector<fs::path> sources{own_sources().front()};
+    for (const fs::path& further : further_sources())
+      for (const char* file : kForOptions)
+        if (further.string().ends_with(file)) sources.push_back(further);
+    return sources;
+  }
+
+  /// A file per option, and one that several reactions are appended to.
+  void bake_options(const fs::path& source) {
+    const Character character = loaded(source);
+    for (const auto& [option, set] : kOptions) {
+      BakeSettings settings;
+      settings.simulation.duration_s = 0.5;
+      set(settings);
+      if (settings.extra_bones_play && !character.animations.empty())
+        settings.clip = clip_label(character, 0);
+      const fs::path file = folder_ / (source.stem().string() + '_' + option + ".glb");
+      settings.outputs = {file};
+      BakedFile baked;
+      if (!write(character, settings, baked)) continue;
+      settings.append = true;
+      settings.hit = "head";
+      if (settings.additive) settings.lead_s = 0.1;
+      if (!write(character, settings, baked)) continue;
+      Json item{{"name", source.filename().string() + " with " + option}, {"before", nullptr}};
+      if (character.format == SourceFormat::gltf) item["before"] = source.string();
+      item["after"] = file.string();
+      item["allowed"] = allowed_for(character);
+      // The skin of a clip without its mesh is there for the sake of its bones.
+      if (settings.clip_only) item["allowed"].push_back("UNUSED_OBJECT");
+      validated_.push_back(item);
+    }
   }
 
   /// At times between the frames; the tracks as we interpolate them.
-  void play_glb(const std::string& name, const fs::path& file, const Character& character,
-                const Humanoid& humanoid, const ReducedClip& reduced) {
+  void play_glb(const fs::path& file, const Character& character, const BakedFile& baked) {
+    const Similarity& world_from_file = baked.outcome.humanoid.world_from_file;
+    const ReducedClip& clip = baked.reduced;
     const bool has_world = character.format != SourceFormat::gltf;
-    Json item{{"name", name + " as .glb"}, {"file", file.string()}, {"animation", reduced.name}};
-    item["tolerance"] = kGltfToleranceM / (has_world ? 1.0 : humanoid.world_from_file.scale);
+    Json item{{"name", character.path.filename().string() + " as .glb"},
+              {"file", file.string()},
+              {"animation", clip.name},
+              {"three_adds_offsets", false}};
+    item["tolerance"] = kGltfToleranceM / (has_world ? 1.0 : world_from_file.scale);
     item["nodes"] = character.skeleton.order;
-    const Animation animation{"", 0, 2, 0, reduced.tracks};
+    const double end_s = baked.outcome.clip.duration_s();
+    const Animation animation{"", 0, end_s, 0, clip.tracks};
     for (int i = 0; i < kTimes; ++i) {
-      const double time = 2.0 * i / (kTimes - 1);
+      const double time = end_s * i / (kTimes - 1);
       const auto world = world_transforms(character.skeleton, sample(character.skeleton, animation, time));
       Json positions = Json::array();
       for (const int node : character.skeleton.order) {
         const Vec3 at = world[node].translation();
-        const Vec3 seen = has_world ? humanoid.world_from_file * at : at;
+        const Vec3 seen = has_world ? world_from_file * at : at;
         positions.push_back({seen.x(), seen.y(), seen.z()});
       }
       item["times"].push_back(time);
@@ -177,19 +229,20 @@ class Clients : public testing::Test {
   }
 
   /// At frames, in the file's unit; joints in the order in which the file lists them.
-  void play_bvh(const std::string& name, const fs::path& file, const Character& character,
-                const Humanoid& humanoid, const Clip& clip, const BvhOptions& options) {
-    if (three_adds_offsets(character)) return;
-    Diagnostics diagnostics;
-    const auto written = load_character(file, {}, diagnostics);
-    ASSERT_TRUE(written) << written.error().message();
+  void play_bvh(const fs::path& file, const Character& character, const BakeOutcome& outcome) {
+    const Similarity& world_from_file = outcome.humanoid.world_from_file;
+    const Clip& clip = outcome.clip;
+    const Character written = loaded(file);
     const bool is_bvh = character.format == SourceFormat::bvh;
-    const double unit = is_bvh ? humanoid.world_from_file.scale : options.metres_per_unit;
-    Json item{{"name", name + " as .bvh"}, {"file", file.string()}, {"tolerance", kBvhToleranceM / unit}};
+    const double unit = is_bvh ? world_from_file.scale : BvhOptions{}.metres_per_unit;
+    Json item{{"name", character.path.filename().string() + " as .bvh"},
+              {"file", file.string()},
+              {"tolerance", kBvhToleranceM / unit},
+              {"three_adds_offsets", three_adds_offsets(character)}};
     std::vector<int> nodes;
-    for (int joint = 0; joint < written->skeleton.size(); ++joint) {
-      const int node = is_bvh ? joint : plain_find(character.skeleton, written->skeleton.nodes[joint].name);
-      ASSERT_GE(node, 0) << written->skeleton.nodes[joint].name;
+    for (int joint = 0; joint < written.skeleton.size(); ++joint) {
+      const int node = is_bvh ? joint : plain_find(character.skeleton, written.skeleton.nodes[joint].name);
+      ASSERT_GE(node, 0) << written.skeleton.nodes[joint].name;
       nodes.push_back(node);
       item["nodes"].push_back(joint);
     }
@@ -199,7 +252,7 @@ class Clients : public testing::Test {
       Json positions = Json::array();
       for (const int node : nodes) {
         const Vec3 at = world[node].translation();
-        const Vec3 seen = is_bvh ? at : Vec3(humanoid.world_from_file * at / unit);
+        const Vec3 seen = is_bvh ? at : Vec3(world_from_file * at / unit);
         positions.push_back({seen.x(), seen.y(), seen.z()});
       }
       item["times"].push_back(static_cast<double>(frame) / clip.fps);
@@ -218,42 +271,74 @@ class Clients : public testing::Test {
     return -1;
   }
 
-  void run_scripts() {
-    for (const auto& [script, list] : {std::pair("validate.mjs", list_), std::pair("play.mjs", played_)}) {
-      const fs::path file = folder_ / (std::string(script) + ".json");
-      ASSERT_TRUE(write_file(file, list.dump()));
-      const fs::path path = fs::path(UKEMI_CLIENTS_FOLDER) / script;
-      const auto [output, status] = run(fmt::format("node '{}' '{}'", path.string(), file.string()));
-      fmt::print("{}", output);
-      EXPECT_EQ(status, 0) << output;
-    }
+  void run_script(const std::string& program, const char* script, const Json& list) {
+    const fs::path file = folder_ / (std::string(script) + ".json");
+    ASSERT_TRUE(write_file(file, list.dump()));
+    const fs::path path = fs::path(UKEMI_CLIENTS_FOLDER) / script;
+    const auto [output, status] = run(fmt::format("{} '{}' -- '{}'", program, path.string(), file.string()));
+    fmt::print("{}", output);
+    EXPECT_EQ(status, 0) << output;
+  }
+  void run_validator() { run_script("node", "validate.mjs", validated_); }
+  void run_three() {
+    Json list = Json::array();
+    for (const Json& item : played_)
+      if (!item["three_adds_offsets"].get<bool>()) list.push_back(item);
+    run_script("node", "play.mjs", list);
+  }
+  void run_blender() {
+    run_script("blender --background --factory-startup --python-exit-code 1 --python", "play.py", played_);
   }
 
   fs::path folder_;
-  Json list_ = Json::array();
+  Json validated_ = Json::array();
   Json played_ = Json::array();
 };
 
-constexpr const char* kNotInstalled =
+constexpr const char* kNoPackages =
     "the packages of tests/clients are not installed: npm ci --prefix tests/clients";
+constexpr const char* kNoBlender =
+    "Blender is not installed: tools/test --clients, or apt-get install blender python3-numpy";
+constexpr const char* kNoData = "without UKEMI_EXTRA_DATA, a folder of further characters";
 
-TEST_F(Clients, AcceptWhatIsWrittenForTheMannequin) {
-  if (!installed()) GTEST_SKIP() << kNotInstalled;
-  write(own_sources());
-  run_scripts();
+TEST_F(Clients, ValidatorAndThreeTakeWhatIsBakedOfTheMannequin) {
+  if (!has_packages()) GTEST_SKIP() << kNoPackages;
+  bake_all(own_sources());
+  run_validator();
+  run_three();
 }
 
-TEST_F(Clients, AcceptWhatIsWrittenForFurtherCharacters) {
-  const char* data = std::getenv("UKEMI_EXTRA_DATA");
-  if (data == nullptr)
-    GTEST_SKIP() << "without UKEMI_EXTRA_DATA: " << kFurther.size() << " characters left out";
-  if (!installed()) GTEST_SKIP() << kNotInstalled;
-  std::vector<fs::path> sources;
-  for (const char* file : kFurther)
-    if (fs::exists(fs::path(data) / file)) sources.push_back(fs::path(data) / file);
-  ASSERT_GE(sources.size(), 6u) << "characters found in " << data;
-  write(sources);
-  run_scripts();
+TEST_F(Clients, ValidatorAndThreeTakeWhatIsBakedOfFurtherCharacters) {
+  if (std::getenv("UKEMI_EXTRA_DATA") == nullptr) GTEST_SKIP() << kNoData;
+  if (!has_packages()) GTEST_SKIP() << kNoPackages;
+  ASSERT_GE(further_sources().size(), 6u) << "characters found";
+  bake_all(further_sources());
+  run_validator();
+  run_three();
+}
+
+TEST_F(Clients, BlenderPlaysWhatIsBakedOfTheMannequin) {
+  if (!has_blender()) GTEST_SKIP() << kNoBlender;
+  bake_all(own_sources());
+  bake_all(own_sources(), true);
+  run_blender();
+}
+
+TEST_F(Clients, BlenderPlaysWhatIsBakedOfFurtherCharacters) {
+  if (std::getenv("UKEMI_EXTRA_DATA") == nullptr) GTEST_SKIP() << kNoData;
+  if (!has_blender()) GTEST_SKIP() << kNoBlender;
+  ASSERT_GE(further_sources().size(), 6u) << "characters found";
+  bake_all(further_sources());
+  run_blender();
+}
+
+TEST_F(Clients, ValidatorTakesWhatEveryOptionWrites) {
+  if (!has_packages()) GTEST_SKIP() << kNoPackages;
+  for (const fs::path& source : sources_for_options()) {
+    SCOPED_TRACE(source.string());
+    bake_options(source);
+  }
+  run_validator();
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ function largestDistance({ root, clip, objects }, { times, positions }) {
   return largest;
 }
 
-const list = JSON.parse(readFileSync(process.argv[2], 'utf8'));
+const list = JSON.parse(readFileSync(process.argv.at(-1), 'utf8'));
 let checked = 0;
 let failures = 0;
 for (const item of list) {

@@ -18,7 +18,7 @@ async function countsOf(path) {
   return { counts, animations: report.info.animationCount };
 }
 
-const list = JSON.parse(readFileSync(process.argv[2], 'utf8'));
+const list = JSON.parse(readFileSync(process.argv.at(-1), 'utf8'));
 let checked = 0;
 let failures = 0;
 for (const { name, before, after, allowed = [] } of list) {

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <random>
 
+#include "export/euler.h"
 #include "export/export.h"
 #include "export/puppet.h"
 #include "load/load.h"
@@ -71,6 +73,39 @@ double largest_turn_deg(const Clip& a, const Clip& b) {
   return largest;
 }
 
+/// Between the joints of a BVH in centimetres and the nodes of the same name, metres.
+double largest_distance_m(const Skeleton& skeleton, const Clip& clip, const Character& bvh) {
+  const Clip read = own_clip(bvh);
+  EXPECT_EQ(read.frames.size(), clip.frames.size());
+  double largest_m = 0.0;
+  for (std::size_t f = 0; f < std::min(clip.frames.size(), read.frames.size()); ++f) {
+    const auto wanted = world_transforms(skeleton, clip.frames[f]);
+    const auto seen = world_transforms(bvh.skeleton, read.frames[f]);
+    for (int i = 0; i < bvh.skeleton.size(); ++i) {
+      const Vec3 at = wanted.at(skeleton.find(bvh.skeleton.nodes[i].name)).translation();
+      largest_m = std::max(largest_m, (0.01 * seen[i].translation() - at).norm());
+    }
+  }
+  return largest_m;
+}
+
+/// Any rotation at all, and runs of them ever nearer to where the middle axis of three is at a quarter turn.
+std::vector<Quat> rotations_of_every_kind(const AxisOrder& order, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> angle(-kPi, kPi);
+  std::vector<Quat> rotations;
+  for (int i = 0; i < 300; ++i)
+    rotations.push_back(from_euler({angle(random), angle(random), angle(random)}, order));
+  for (const double quarter : {kPi / 2, -kPi / 2})
+    for (double off = 0.1; off > 1e-18; off /= 2) {
+      rotations.push_back(from_euler({angle(random), quarter + off, angle(random)}, order));
+      rotations.push_back(from_euler({0.3, quarter - off, off}, order));
+    }
+  for (const double turn : {0.0, kPi, -kPi, kPi / 2, 2 * kPi})
+    rotations.push_back(from_euler({turn, 0, turn}, order));
+  return rotations;
+}
+
 TEST(WriteBvh, WritesASourceBackAsItWas) {
   const Character character = load(kSource);
   const auto text = write_bvh(character, {}, own_clip(character), {});
@@ -95,6 +130,59 @@ TEST(WriteBvh, GivesTheSameRotationsToAMillionthOfADegree) {
   const auto text = write_bvh(character, {}, clip, {});
   ASSERT_TRUE(text);
   EXPECT_LT(largest_turn_deg(own_clip(load(*text)), clip), 1e-6);
+}
+
+constexpr AxisOrder kOrders[] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+
+TEST(WriteBvh, GivesBackEveryRotationInEveryOrderOfChannels) {
+  for (const AxisOrder& order : kOrders) {
+    Character character = load(kSource);
+    std::vector<BvhChannel> channels;
+    for (const int axis : order)
+      channels.push_back(static_cast<BvhChannel>(static_cast<int>(BvhChannel::x_rotation) + axis));
+    character.bvh->channels[1] = channels;
+    character.bvh->channels[2] = channels;
+    const std::vector<Quat> first = rotations_of_every_kind(order, 1);
+    const std::vector<Quat> second = rotations_of_every_kind(order, 2);
+    Clip clip{"all", 60, {}, {}};
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      clip.frames.push_back(rest_pose(character.skeleton));
+      clip.frames.back()[1].rotation = first[i];
+      clip.frames.back()[2].rotation = second[first.size() - 1 - i];
+    }
+    const auto text = write_bvh(character, {}, clip, {});
+    ASSERT_TRUE(text);
+    EXPECT_LT(largest_turn_deg(own_clip(load(*text)), clip), 1e-6);
+  }
+}
+
+TEST(WriteBvh, GivesBackEveryRotationOfItsOwnHierarchy) {
+  const test::Puppet puppet = test::make_puppet();
+  const Skeleton& skeleton = puppet.character.skeleton;
+  const std::vector<Quat> rotations = rotations_of_every_kind({2, 1, 0}, 3);
+  Clip clip{"all", 60, {}, {}};
+  for (std::size_t f = 0; f < rotations.size(); ++f) {
+    clip.frames.push_back(rest_pose(skeleton));
+    for (std::size_t i = 1; i < clip.frames[f].size(); ++i)
+      clip.frames[f][i].rotation = clip.frames[f][i].rotation * rotations[(f + 7 * i) % rotations.size()];
+  }
+  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {});
+  ASSERT_TRUE(text);
+  const Character bvh = load(*text);
+  const Clip read = own_clip(bvh);
+  const auto rest = world_transforms(skeleton, rest_pose(skeleton));
+  double largest_deg = 0.0;
+  for (std::size_t f = 0; f < rotations.size(); ++f) {
+    const auto wanted = world_transforms(skeleton, clip.frames[f]);
+    const auto seen = world_transforms(bvh.skeleton, read.frames[f]);
+    for (int i = 0; i < bvh.skeleton.size(); ++i) {
+      const int node = skeleton.find(bvh.skeleton.nodes[i].name);
+      const Quat turned =
+          rotation_part(wanted[node].linear()) * rotation_part(rest[node].linear()).conjugate();
+      largest_deg = std::max(largest_deg, degrees(angle_between(rotation_part(seen[i].linear()), turned)));
+    }
+  }
+  EXPECT_LT(largest_deg, 1e-6);
 }
 
 TEST(WriteBvh, LetsAnglesRunOnInsteadOfJumping) {
@@ -126,19 +214,21 @@ TEST(WriteBvh, BuildsItsOwnHierarchyForOtherSources) {
   EXPECT_TRUE(bvh.skeleton.nodes[0].rest.translation.isZero());
   EXPECT_EQ(bvh.bvh->channels[0].size(), 6u);
   for (int i = 1; i < bvh.skeleton.size(); ++i) EXPECT_EQ(bvh.bvh->channels[i].size(), 3u);
-  const Clip read = own_clip(bvh);
-  ASSERT_EQ(read.frames.size(), clip.frames.size());
-  double largest_m = 0.0;
-  for (std::size_t f = 0; f < clip.frames.size(); ++f) {
-    const auto wanted = world_transforms(skeleton, clip.frames[f]);
-    const auto seen = world_transforms(bvh.skeleton, read.frames[f]);
-    for (int i = 0; i < bvh.skeleton.size(); ++i) {
-      const int node = skeleton.find(bvh.skeleton.nodes[i].name);
-      ASSERT_GE(node, 0);
-      largest_m = std::max(largest_m, (0.01 * seen[i].translation() - wanted[node].translation()).norm());
-    }
+  EXPECT_LT(largest_distance_m(skeleton, clip, bvh), 1e-12);
+}
+
+TEST(WriteBvh, TakesTheLengthsOfBonesFromTheClip) {
+  test::Puppet puppet = test::make_puppet();
+  const Skeleton& skeleton = puppet.character.skeleton;
+  Clip clip = test::falling_clip(skeleton);
+  for (Pose& pose : clip.frames) {
+    pose[skeleton.find("LeftLeg")].translation += Vec3(1, -3, 2);
+    pose[skeleton.find("Hips")].scale = Vec3::Constant(1.1);
+    pose[skeleton.find("Spine")].scale = Vec3::Constant(0.9);
   }
-  EXPECT_LT(largest_m, 1e-12);
+  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {});
+  ASSERT_TRUE(text);
+  EXPECT_LT(largest_distance_m(skeleton, clip, load(*text)), 1e-12);
 }
 
 TEST(WriteBvh, HangsDetachedFeetOnTheSegmentAbove) {

@@ -279,9 +279,37 @@ TEST(WriteGlb, LeavesSkeletonAndAnimationOfAClipAlone) {
   const Glb glb = parse_glb(*write_glb(character, {}, turn_of(0), options));
   EXPECT_EQ(glb.json["animations"].size(), 1u);
   EXPECT_EQ(glb.json["accessors"].size(), 2u);
-  EXPECT_EQ(glb.json["nodes"][0], Json::parse(R"({"name":"a"})"));
+  EXPECT_EQ(glb.json["nodes"][0],
+            Json::parse(R"({"name":"a","extras":{"ukemi":{"left_out":"extensions"}}})"));
   EXPECT_FALSE(glb.json.contains("extensionsUsed"));
   EXPECT_EQ(tracks_of(glb.json, glb.bin, glb.json["animations"][0]).size(), 1u);
+}
+
+TEST(WriteGlb, KeepsTheSkinsOfAClipAloneSoThatItsNodesAreBones) {
+  Character character = from_json(R"({"asset":{"version":"2.0"},
+"nodes":[{"name":"hip","children":[1]},{"name":"tip"},{"name":"skin","mesh":0,"skin":0},{"name":"hat","mesh":1,"extras":5}],
+"meshes":[{"primitives":[]},{"primitives":[]}],
+"skins":[{"name":"low","joints":[0,1],"inverseBindMatrices":0},{"name":"high","joints":[0,1],"skeleton":0,"inverseBindMatrices":1}]})",
+                                  {{}}, true, 4);
+  Affine moved = Affine::Identity();
+  moved.translation() = Vec3(0, -2, 0);
+  character.skins = {{{0, 1}, {Affine::Identity(), Affine::Identity()}},
+                     {{0, 1}, {Affine::Identity(), moved}}};
+  GltfOptions options;
+  options.clip_only = true;
+  const Glb glb = parse_glb(*write_glb(character, {}, turn_of(0), options));
+  ASSERT_EQ(glb.json["skins"].size(), 1u) << "one of those with the same joints";
+  const Json& skin = glb.json["skins"][0];
+  EXPECT_EQ(skin["name"], "high");
+  EXPECT_EQ(skin["joints"], Json::parse("[0,1]"));
+  EXPECT_EQ(skin["skeleton"], 0);
+  const auto matrices = floats_of(glb.json, glb.bin, skin["inverseBindMatrices"]);
+  ASSERT_EQ(matrices.size(), 32u);
+  EXPECT_EQ(matrices[16 + 13], -2.0f);
+  EXPECT_FALSE(glb.json.contains("meshes"));
+  EXPECT_EQ(glb.json["nodes"][1], Json::parse(R"({"name":"tip"})"));
+  EXPECT_EQ(glb.json["nodes"][2], Json::parse(R"({"name":"skin","extras":{"ukemi":{"left_out":"mesh"}}})"));
+  EXPECT_EQ(glb.json["nodes"][3], Json::parse(R"({"name":"hat","extras":5})"));
 }
 
 TEST(WriteGlb, RefusesADocumentThatIsNotTheSkeletons) {
