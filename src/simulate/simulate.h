@@ -40,8 +40,8 @@ struct Scene {
   SceneKind kind = SceneKind::ball;
   Segment target = Segment::chest;
   Vec3 direction = Vec3(0, 0, 0);  // unit: the way the blow travels
-  /// ball: flies into the target. slope: rolls down a ramp into the body. box: a cube of that half edge
-  /// slides in.
+  /// ball: flies into the target, above the floor. slope: rolls down a ramp into the body. box: a cube of
+  /// that half edge slides in.
   Vec3 aim_offset = Vec3(0, 0, 0);  // ball, box: from the target's centre to where it is aimed
   double ball_mass_kg = 5.0;
   double ball_speed_m_s = 6.0;  // at contact

@@ -129,7 +129,10 @@ void Stage::begin_missile(Diagnostics& diagnostics) {
   const dGeomID geom = box ? dCreateBox(nullptr, 2.0 * r, 2.0 * r, 2.0 * r) : dCreateSphere(nullptr, r);
   const Quat rotation = box ? facing(scene_.direction) : Quat::Identity();
   set_pose(geom, Vec3::Zero(), rotation);
-  launch(geom, aim(geom, diagnostics), scene_.ball_speed_m_s * scene_.direction, Vec3::Zero(), rotation);
+  const Vec3 at = aim(geom, diagnostics);
+  if (at.y() < height_on_floor(geom) - kTouchDepth)
+    diagnostics.warn(std::string(name(scene_.target)), "the blow comes out of the floor");
+  launch(geom, at, scene_.ball_speed_m_s * scene_.direction, Vec3::Zero(), rotation);
 }
 
 /// A ramp whose foot lies where the ball, rolling down without slipping, meets the body. From rest the ball

@@ -330,6 +330,25 @@ TEST(Simulate, WhatHitsAFootComesAboveTheFloor) {
     }
 }
 
+TEST(Simulate, ABlowStraightOutOfTheFloorIsSaid) {
+  const StandingMan man;
+  Scene scene;
+  scene.target = Segment::foot_r;
+  SimulationSettings settings;
+  settings.duration_s = 0.1;
+  StartState start;
+  start.segments = man.segments;
+  for (const double up : {1.0, -1.0}) {
+    scene.direction = Vec3(0.0, up, 0.0);
+    Diagnostics diagnostics;
+    ASSERT_TRUE(simulate(man.body, man.range, start, scene, settings, diagnostics));
+    bool said = false;
+    for (const Warning& warning : diagnostics.warnings())
+      said = said || warning.what.find("out of the floor") != std::string::npos;
+    EXPECT_EQ(said, up > 0.0);
+  }
+}
+
 TEST(Simulate, ABoxSlidesIn) {
   const StandingMan man;
   Scene scene;
