@@ -19,6 +19,7 @@
 #include "base/files.h"
 #include "body/ground.h"
 #include "export/additive.h"
+#include "humanoid/rotations.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -47,9 +48,7 @@ class Stopwatch {
 
 /// Makes every joint of the start pose lie inside its range, by widening the range where it does not.
 void widen_for_start(BakeOutcome& outcome, Diagnostics& diagnostics) {
-  PerSegment<Quat> rotations;
-  for (int i = 0; i < kSegmentCount; ++i) rotations[i] = outcome.start.segments[i].rotation;
-  const PerJoint<SwingTwist> charts = charts_of(outcome.range, rotations);
+  const PerJoint<SwingTwist> charts = charts_of(outcome.range, rotations_of(outcome.start.segments));
   for (int i = 0; i < kJointCount; ++i) {
     if (outcome.body.joints[i].fused) continue;
     const double outside = excess(outcome.range.joints[i], charts[i]);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "humanoid/rotations.h"
 #include "render/chart.h"
 #include "render/rows.h"
 
@@ -37,9 +38,7 @@ std::string title_of(const std::string& method) {
 
 std::vector<Outside> outside_in(const RangeOfMotion& range, const BodyPose& segments,
                                 const ArticulatedBody& body) {
-  PerSegment<Quat> rotations;
-  for (int s = 0; s < kSegmentCount; ++s) rotations[s] = segments[s].rotation;
-  const PerJoint<SwingTwist> charts = charts_of(range, rotations);
+  const PerJoint<SwingTwist> charts = charts_of(range, rotations_of(segments));
   std::vector<Outside> outside;
   for (int j = 0; j < kJointCount; ++j) {
     const double value = excess(range.joints[j], charts[j]);

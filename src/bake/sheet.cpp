@@ -10,6 +10,7 @@
 #include "bake/frames.h"
 #include "bake/impact.h"
 #include "base/numbers.h"
+#include "humanoid/rotations.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -140,9 +141,7 @@ Fact excess_fact(const Loaded& loaded, const RangeOfMotion& range) {
   double most = 0.0;
   std::string_view worst;
   for (const BodyPose& pose : loaded.segments) {
-    PerSegment<Quat> rotations;
-    for (int i = 0; i < kSegmentCount; ++i) rotations[i] = pose[i].rotation;
-    const PerJoint<SwingTwist> charts = charts_of(range, rotations);
+    const PerJoint<SwingTwist> charts = charts_of(range, rotations_of(pose));
     for (int j = 0; j < kJointCount; ++j) {
       if (loaded.body->joints[j].fused || excess(range.joints[j], charts[j]) <= most) continue;
       most = excess(range.joints[j], charts[j]);

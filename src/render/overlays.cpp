@@ -1,4 +1,5 @@
 #include "render/overlays.h"
+#include "humanoid/rotations.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,8 +122,7 @@ void add_joint_axes(Geometry& geometry, const Shot& shot, int frame) {
 
 void add_range_cones(Geometry& geometry, const Shot& shot, int frame) {
   const BodyPose& pose = (*shot.segments)[frame];
-  PerSegment<Quat> rotations;
-  for (int i = 0; i < kSegmentCount; ++i) rotations[i] = pose[i].rotation;
+  const PerSegment<Quat> rotations = rotations_of(pose);
   const PerJoint<SwingTwist> charts = charts_of(*shot.range, rotations);
   const double size = shot.humanoid != nullptr ? shot.humanoid->height_m / 1.75 : 1.0;
   for (int j = 0; j < kJointCount; ++j) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "humanoid/rotations.h"
 #include "simulate/check.h"
 #include "simulate/collision.h"
 #include "simulate/figures.h"
@@ -290,9 +291,7 @@ std::vector<double> Simulation::joint_excesses() const {
 
 std::vector<double> Simulation::judged_excesses() const {
   const BodyPose segments = model_.segments();
-  PerSegment<Quat> rotations;
-  for (int s = 0; s < kSegmentCount; ++s) rotations[s] = segments[s].rotation;
-  const PerJoint<SwingTwist> charts = charts_of(*judged_, rotations);
+  const PerJoint<SwingTwist> charts = charts_of(*judged_, rotations_of(segments));
   std::vector<double> result;
   result.reserve(model_.joints().size());
   for (const ModelJoint& joint : model_.joints())

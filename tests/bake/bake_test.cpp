@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "bake/report.h"
 #include "load/load.h"
+#include "support/extra_data.h"
 
 namespace ukemi {
 namespace {
@@ -70,12 +70,12 @@ TEST(Bake, ReportAndClipAloneGiveEverySegmentsOrientation) {
 }
 
 TEST(Bake, ReportAndClipGiveTheSegmentsOfOtherPeoplesCharacters) {
-  const char* data = std::getenv("UKEMI_EXTRA_DATA");
-  if (!data) GTEST_SKIP() << "UKEMI_EXTRA_DATA is not set: z-up and scaled skeletons are left out";
+  const auto data = extra_data();
+  if (!data) GTEST_SKIP() << kNoExtraData;
   for (const char* file :
        {"characters/quaternius_glb/modular_men/Casual.glb", "characters/quaternius_glb/RobotExpressive.glb",
         "characters/ozz_pab_fbx/arnaud.fbx", "mocap/cmu_bvh/cmu_12_01_walk.bvh"})
-    EXPECT_LT(rebuild_error_deg(bake_of(std::filesystem::path(data) / file, {})), 0.01) << file;
+    EXPECT_LT(rebuild_error_deg(bake_of(*data / file, {})), 0.01) << file;
 }
 
 TEST(Bake, FirstFrameIsTheStartPoseExactly) {

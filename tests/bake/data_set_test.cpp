@@ -2,40 +2,18 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 #include "bake/bake.h"
 #include "bake/inspect.h"
 #include "load/load.h"
+#include "support/extra_data.h"
 
 namespace ukemi {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Entry {
-  std::string file;
-  std::string expected;  // "humanoid", "not-humanoid" or "malformed"
-};
-
-std::vector<Entry> manifest(const fs::path& folder) {
-  std::ifstream stream(folder / "MANIFEST.tsv");
-  std::vector<Entry> entries;
-  std::string line;
-  std::getline(stream, line);  // head
-  while (std::getline(stream, line)) {
-    std::vector<std::string> fields;
-    std::istringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, '\t');) fields.push_back(cell);
-    if (fields.size() < 11) continue;
-    entries.push_back({fields[0], fields[10] == "refused-nonhumanoid" ? "not-humanoid" : fields[10]});
-  }
-  return entries;
-}
 
 /// Where the manifest and the program differ, and why the program is right.
 const std::map<std::string, std::pair<std::string, const char*>> kArgued = {
@@ -80,7 +58,12 @@ std::string baked(const Character& character, std::string& problems) {
                      1000.0 * outcome->simulation.figures.joint_separation_max_m);
 }
 
-Outcome examine(const fs::path& folder, const Entry& entry) {
+/// The verdict in the words of `ukemi inspect`.
+std::string expected_verdict(const ExtraFile& entry) {
+  return entry.verdict == "refused-nonhumanoid" ? "not-humanoid" : entry.verdict;
+}
+
+Outcome examine(const fs::path& folder, const ExtraFile& entry) {
   Outcome outcome;
   Diagnostics diagnostics;
   auto inspection = inspect((folder / entry.file).string(), {}, diagnostics);
@@ -90,7 +73,7 @@ Outcome examine(const fs::path& folder, const Entry& entry) {
   }
   outcome.inspection = std::move(*inspection);
   const auto argued = kArgued.find(entry.file);
-  const std::string& expected = argued == kArgued.end() ? entry.expected : argued->second.first;
+  const std::string expected = argued == kArgued.end() ? expected_verdict(entry) : argued->second.first;
   if (name(outcome.inspection.verdict) != expected) outcome.problems += " expected " + expected;
   if (outcome.inspection.verdict == Verdict::humanoid)
     outcome.bake = baked(*outcome.inspection.character, outcome.problems);
@@ -109,19 +92,19 @@ int mapped_segments(const Inspection& inspection) {
 }
 
 TEST(DataSet, EveryFileGetsItsVerdictAndEveryHumanoidBakes) {
-  const char* data = std::getenv("UKEMI_EXTRA_DATA");
-  if (data == nullptr) GTEST_SKIP() << "UKEMI_EXTRA_DATA names no folder with characters made by others";
+  const auto data = extra_data();
+  if (!data) GTEST_SKIP() << kNoExtraData;
   int humanoids = 0, disagreements = 0, argued = 0;
   fmt::print("{:<13} {:<13} {:>7} {:>4} {:>5} {:>6} {:>7}  {}\n", "expected", "ours", "height", "map",
              ">1deg", "excess", "part/mm", "file");
-  for (const Entry& entry : manifest(data)) {
-    const Outcome outcome = examine(data, entry);
+  for (const ExtraFile& entry : extra_files(*data)) {
+    const Outcome outcome = examine(*data, entry);
     const Inspection& inspection = outcome.inspection;
-    humanoids += entry.expected == "humanoid" && inspection.verdict == Verdict::humanoid ? 1 : 0;
+    humanoids += entry.verdict == "humanoid" && inspection.verdict == Verdict::humanoid ? 1 : 0;
     argued += static_cast<int>(kArgued.count(entry.file));
     const std::string height =
         inspection.humanoid ? fmt::format("{:.2f} m", inspection.humanoid->height_m) : "-";
-    fmt::print("{:<13} {:<13} {:>7} {:>4} {:>20}  {}\n", entry.expected, name(inspection.verdict), height,
+    fmt::print("{:<13} {:<13} {:>7} {:>4} {:>20}  {}\n", expected_verdict(entry), name(inspection.verdict), height,
                mapped_segments(inspection), outcome.bake, entry.file);
     EXPECT_TRUE(outcome.problems.empty()) << entry.file << ":" << outcome.problems;
     disagreements += outcome.problems.empty() ? 0 : 1;

@@ -2,17 +2,15 @@
 // them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
 #include "humanoid/humanoid.h"
 #include "load/load.h"
+#include "support/command.h"
 
 namespace ukemi {
 namespace {
@@ -33,19 +31,8 @@ preset = "punch"
 )";
 const char* const kHostileName = "</script><img src=x onerror=alert(1)>'\"&amp;";
 
-/// The program's output and exit status.
-std::pair<std::string, int> run(const std::string& command) {
-  std::string output;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return {"cannot start " + command, -1};
-  std::array<char, 4096> buffer;
-  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) output.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  return {output, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
-}
-
 std::string missing() {
-  if (run("node --version").second != 0) return "node is not installed";
+  if (run_command("node --version").second != 0) return "node is not installed";
   if (!fs::exists("/usr/bin/chromium") && !fs::exists("/usr/bin/chromium-browser") &&
       !fs::exists("/usr/bin/google-chrome"))
     return "Chromium is not installed";
@@ -67,7 +54,7 @@ class Browser : public testing::Test {
   }
 
   void program(const std::string& arguments) {
-    const auto [output, status] = run(fmt::format("'{}' {}", UKEMI_PROGRAM, arguments));
+    const auto [output, status] = run_command(fmt::format("'{}' {}", UKEMI_PROGRAM, arguments));
     ASSERT_EQ(status, 0) << arguments << "\n" << output;
   }
 
@@ -113,7 +100,7 @@ TEST_F(Browser, ServesAReviewer) {
                   {"hostile", {{"folder", (folder / "hostile").string()}, {"name", kHostileName}}}};
   ASSERT_TRUE(write_file(folder / "work.json", work.dump()));
   const auto [output, status] =
-      run(fmt::format("node '{}/drive.mjs' '{}'", UKEMI_BROWSER_FOLDER, (folder / "work.json").string()));
+      run_command(fmt::format("node '{}/drive.mjs' '{}'", UKEMI_BROWSER_FOLDER, (folder / "work.json").string()));
   EXPECT_EQ(status, 0) << output;
   EXPECT_NE(output.find(" checks, 0 failed"), std::string::npos) << output;
 }
@@ -123,7 +110,7 @@ TEST(Web, IsWhatItsSourcesMake) {
   if (!fs::exists(web / "node_modules/esbuild")) GTEST_SKIP() << "run npm ci in tools/web, or tools/test";
   const fs::path made = fs::path(testing::TempDir()) / ("ukemi_web_" + std::to_string(getpid()));
   const auto [output, status] =
-      run(fmt::format("node '{}' '{}'", (web / "build.mjs").string(), made.string()));
+      run_command(fmt::format("node '{}' '{}'", (web / "build.mjs").string(), made.string()));
   ASSERT_EQ(status, 0) << output;
   for (const char* name : {"index.html", "review.css", "review.js"}) {
     const auto kept = find_asset(fs::path("web") / name);

@@ -1,11 +1,11 @@
 // Bakes of the program's own character, and of characters made by others where UKEMI_EXTRA_DATA names them.
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "program.h"
+#include "support/extra_data.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;
@@ -276,9 +276,8 @@ struct ExtraBake {
 };
 
 TEST_F(Bake, OfCharactersMadeByOthersStaysHuman) {
-  const char* data = std::getenv("UKEMI_EXTRA_DATA");
-  if (!data)
-    GTEST_SKIP() << "UKEMI_EXTRA_DATA is not set: glTF, FBX and BVH characters made by others are left out";
+  const auto data = extra_data();
+  if (!data) GTEST_SKIP() << kNoExtraData;
   const ExtraBake bakes[] = {
       {"mocap/cmu_bvh/cmu_12_01_walk.bvh", {"--at", "0.5", "--hit", "head", "--from", "left"}},
       {"characters/quaternius_glb/modular_men/Casual.glb", {"--hit", "pelvis", "--from", "right"}},
@@ -288,7 +287,7 @@ TEST_F(Bake, OfCharactersMadeByOthersStaysHuman) {
   };
   for (const ExtraBake& bake : bakes) {
     SCOPED_TRACE(bake.character);
-    const fs::path character = fs::path(data) / bake.character;
+    const fs::path character = *data / bake.character;
     ASSERT_TRUE(fs::exists(character));
     std::vector<std::string> arguments = {"bake", character.string(), "--json", "-o", "a.glb", "-o", "a.bvh"};
     arguments.insert(arguments.end(), bake.options.begin(), bake.options.end());

@@ -2,13 +2,10 @@
 // and three.js and Blender play every clip with each joint where we have it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +14,8 @@
 #include "base/files.h"
 #include "export/export.h"
 #include "load/load.h"
+#include "support/command.h"
+#include "support/extra_data.h"
 
 namespace ukemi {
 namespace {
@@ -61,17 +60,6 @@ constexpr std::array<std::pair<const char*, void (*)(BakeSettings&)>, 11> kOptio
     {"keys_all", [](BakeSettings& s) { s.keys.enabled = false; }},
 }};
 
-/// The program's output and exit status.
-std::pair<std::string, int> run(const std::string& command) {
-  std::string output;
-  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-  if (pipe == nullptr) return {"cannot start " + command, -1};
-  std::array<char, 4096> buffer;
-  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) output.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  return {output, WIFEXITED(status) ? WEXITSTATUS(status) : -1};
-}
-
 class Clients : public testing::Test {
  protected:
   Clients() : folder_(fs::temp_directory_path() / fmt::format("ukemi_clients_{}", getpid())) {
@@ -83,7 +71,7 @@ class Clients : public testing::Test {
     return fs::exists(fs::path(UKEMI_CLIENTS_FOLDER) / "node_modules" / "gltf-validator");
   }
   static bool has_blender() {
-    return run("blender --background --python-exit-code 1 --python-expr 'import numpy'").second == 0;
+    return run_command("blender --background --python-exit-code 1 --python-expr 'import numpy'").second == 0;
   }
   static std::vector<fs::path> own_sources() {
     const fs::path characters = fs::path(UKEMI_ASSETS_FOLDER) / "characters";
@@ -91,9 +79,9 @@ class Clients : public testing::Test {
   }
   static std::vector<fs::path> further_sources() {
     std::vector<fs::path> sources;
-    const char* data = std::getenv("UKEMI_EXTRA_DATA");
+    const auto data = extra_data();
     for (const char* file : kFurther)
-      if (data != nullptr && fs::exists(fs::path(data) / file)) sources.push_back(fs::path(data) / file);
+      if (data && fs::exists(*data / file)) sources.push_back(*data / file);
     return sources;
   }
 
@@ -275,7 +263,8 @@ class Clients : public testing::Test {
     const fs::path file = folder_ / (std::string(script) + ".json");
     ASSERT_TRUE(write_file(file, list.dump()));
     const fs::path path = fs::path(UKEMI_CLIENTS_FOLDER) / script;
-    const auto [output, status] = run(fmt::format("{} '{}' -- '{}'", program, path.string(), file.string()));
+    const auto [output, status] =
+        run_command(fmt::format("{} '{}' -- '{}'", program, path.string(), file.string()));
     fmt::print("{}", output);
     EXPECT_EQ(status, 0) << output;
   }
@@ -299,7 +288,6 @@ constexpr const char* kNoPackages =
     "the packages of tests/clients are not installed: npm ci --prefix tests/clients";
 constexpr const char* kNoBlender =
     "Blender is not installed: tools/test --clients, or apt-get install blender python3-numpy";
-constexpr const char* kNoData = "without UKEMI_EXTRA_DATA, a folder of further characters";
 
 TEST_F(Clients, ValidatorAndThreeTakeWhatIsBakedOfTheMannequin) {
   if (!has_packages()) GTEST_SKIP() << kNoPackages;
@@ -309,7 +297,7 @@ TEST_F(Clients, ValidatorAndThreeTakeWhatIsBakedOfTheMannequin) {
 }
 
 TEST_F(Clients, ValidatorAndThreeTakeWhatIsBakedOfFurtherCharacters) {
-  if (std::getenv("UKEMI_EXTRA_DATA") == nullptr) GTEST_SKIP() << kNoData;
+  if (!extra_data()) GTEST_SKIP() << kNoExtraData;
   if (!has_packages()) GTEST_SKIP() << kNoPackages;
   ASSERT_GE(further_sources().size(), 6u) << "characters found";
   bake_all(further_sources());
@@ -325,7 +313,7 @@ TEST_F(Clients, BlenderPlaysWhatIsBakedOfTheMannequin) {
 }
 
 TEST_F(Clients, BlenderPlaysWhatIsBakedOfFurtherCharacters) {
-  if (std::getenv("UKEMI_EXTRA_DATA") == nullptr) GTEST_SKIP() << kNoData;
+  if (!extra_data()) GTEST_SKIP() << kNoExtraData;
   if (!has_blender()) GTEST_SKIP() << kNoBlender;
   ASSERT_GE(further_sources().size(), 6u) << "characters found";
   bake_all(further_sources());

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "humanoid/rotations.h"
 #include "simulate/standing_man.h"
 
 namespace ukemi {
@@ -39,9 +40,7 @@ Request request_of(const BodyPose& segments, double height_m, double mass_kg) {
   request.start.segments = segments;
   request.scene.direction = Vec3(-1.0, 0.0, 0.0);
   request.settings.duration_s = 1.0;
-  PerSegment<Quat> rotations;
-  for (int s = 0; s < kSegmentCount; ++s) rotations[s] = segments[s].rotation;
-  const auto charts = charts_of(request.range, rotations);
+  const auto charts = charts_of(request.range, rotations_of(segments));
   for (int j = 0; j < kJointCount; ++j) widen_to_hold(request.range.joints[j], charts[j], radians(3.0));
   return request;
 }

@@ -4,6 +4,7 @@
 
 #include "humanoid/figures.h"
 #include "humanoid/humanoid.h"
+#include "humanoid/rotations.h"
 #include "restrict/range_of_motion.h"
 
 namespace ukemi {
@@ -55,9 +56,7 @@ TEST(StartPose, StandAndGuardLieInsideTheHumanRangeWithThreeDegreesToSpare) {
   for (const FigureOptions& options : all_figures())
     for (const StartPose kind : {StartPose::stand, StartPose::guard}) {
       const Standing standing(figure(options), kind);
-      PerSegment<Quat> rotations;
-      for (int s = 0; s < kSegmentCount; ++s) rotations[s] = standing.body[s].rotation;
-      const PerJoint<SwingTwist> charts = charts_of(*range, rotations);
+      const PerJoint<SwingTwist> charts = charts_of(*range, rotations_of(standing.body));
       for (int j = 0; j < kJointCount; ++j) {
         const JointRange& joint = range->joints[j];
         EXPECT_LT(polygon_distance(joint.polygon, charts[j].swing), radians(-3)) << name(joint_at(j));

@@ -1,36 +1,15 @@
-// Characters and motion made by others: the folder that UKEMI_EXTRA_DATA names, with its MANIFEST.tsv.
+// Files made by others, where UKEMI_EXTRA_DATA names their folder: what is sound loads, what is not is refused.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "load/load.h"
+#include "support/extra_data.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;
 namespace {
-
-struct Entry {
-  std::string file;
-  std::string verdict;  // what the manifest expects
-};
-
-std::vector<Entry> manifest(const fs::path& folder) {
-  std::ifstream stream(folder / "MANIFEST.tsv");
-  std::vector<Entry> entries;
-  std::string line;
-  std::getline(stream, line);  // head
-  while (std::getline(stream, line)) {
-    std::vector<std::string> fields;
-    std::istringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, '\t');) fields.push_back(cell);
-    if (fields.size() >= 11) entries.push_back({fields[0], fields[10]});
-  }
-  return entries;
-}
 
 /// Every pose of every track at start, middle and end must be finite, and every index in range.
 void expect_consistent(const Character& c) {
@@ -61,19 +40,19 @@ void expect_consistent(const Character& c) {
 class ExtraData : public testing::Test {
  protected:
   void SetUp() override {
-    const char* variable = std::getenv("UKEMI_EXTRA_DATA");
-    if (variable == nullptr) GTEST_SKIP() << "UKEMI_EXTRA_DATA is not set: no files made by others are read";
-    folder = variable;
-    entries = manifest(folder);
+    const auto named = extra_data();
+    if (!named) GTEST_SKIP() << kNoExtraData;
+    folder = *named;
+    entries = extra_files(folder);
     ASSERT_FALSE(entries.empty()) << "no MANIFEST.tsv in " << folder;
   }
   fs::path folder;
-  std::vector<Entry> entries;
+  std::vector<ExtraFile> entries;
 };
 
 TEST_F(ExtraData, EveryCharacterMotionAndPropLoads) {
   int count = 0;
-  for (const Entry& entry : entries) {
+  for (const ExtraFile& entry : entries) {
     if (entry.verdict == "malformed" || entry.file.starts_with("malformed/")) continue;
     SCOPED_TRACE(entry.file);
     Diagnostics diagnostics;
@@ -92,7 +71,7 @@ const std::set<std::string> kHarmless{"malformed/assimp/BoxTextured.gltf",
 
 TEST_F(ExtraData, EveryMalformedFileIsRefused) {
   int count = 0;
-  for (const Entry& entry : entries) {
+  for (const ExtraFile& entry : entries) {
     if (entry.verdict != "malformed") continue;
     SCOPED_TRACE(entry.file);
     Diagnostics diagnostics;

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "humanoid/humanoid.h"
+#include "humanoid/rotations.h"
 #include "load/load.h"
 #include "restrict/range_of_motion.h"
 
@@ -136,9 +137,7 @@ TEST(Mannequin, ClipsStayWithinTheRangeOfMotion) {
     ASSERT_GT(motion.frames.size(), 50u);
     for (std::size_t frame = 0; frame < motion.frames.size(); ++frame) {
       const BodyPose body = canonical_segments_of(character.skeleton, humanoid, motion.frames[frame]);
-      PerSegment<Quat> rotations;
-      for (int s = 0; s < kSegmentCount; ++s) rotations[s] = body[s].rotation;
-      const auto charts = charts_of(*range, rotations);
+      const auto charts = charts_of(*range, rotations_of(body));
       for (int j = 0; j < kJointCount; ++j)
         EXPECT_EQ(excess(range->joints[j], charts[j]), 0.0)
             << name << " frame " << frame << " joint " << j << " swing " << degrees(charts[j].swing.x())

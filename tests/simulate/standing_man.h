@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "body/body.h"
+#include "humanoid/rotations.h"
 #include "restrict/range_of_motion.h"
 #include "simulate/simulate.h"
 
@@ -43,9 +44,7 @@ struct StandingMan {
     auto loaded = load_range_of_motion(region);
     EXPECT_TRUE(loaded);
     range = *loaded;
-    PerSegment<Quat> rotations;
-    for (int s = 0; s < kSegmentCount; ++s) rotations[s] = segments[s].rotation;
-    const auto charts = charts_of(range, rotations);
+    const auto charts = charts_of(range, rotations_of(segments));
     for (int j = 0; j < kJointCount; ++j) widen_to_hold(range.joints[j], charts[j], radians(3.0));
   }
 

@@ -4,6 +4,7 @@
 #include "body/body.h"
 #include "fuzz/checks.h"
 #include "humanoid/humanoid.h"
+#include "humanoid/rotations.h"
 #include "load/load.h"
 #include "simulate/simulate.h"
 
@@ -37,9 +38,7 @@ void require_finite(const SimulationResult& result) {
 
 void hit(const ArticulatedBody& body, const BodyPose& segments) {
   RangeOfMotion range = human_range();
-  PerSegment<Quat> rotations;
-  for (int s = 0; s < kSegmentCount; ++s) rotations[s] = segments[s].rotation;
-  const PerJoint<SwingTwist> charts = charts_of(range, rotations);
+  const PerJoint<SwingTwist> charts = charts_of(range, rotations_of(segments));
   for (int j = 0; j < kJointCount; ++j) widen_to_hold(range.joints[j], charts[j], radians(3.0));
   StartState start;
   start.segments = segments;
