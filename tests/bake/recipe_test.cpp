@@ -184,7 +184,7 @@ TEST(Recipe, ARejectedTakeGetsTheNextSeedAndNoOtherChanges) {
   EXPECT_EQ(names(after), names(before));
 }
 
-TEST(Recipe, RefusesWithThePlaceAndTheNearestName) {
+TEST(RecipeRefusal, AtItsTopSaysWhereAndWhatIsNear) {
   expect_refused("format = 1\n", 1, 1, "'characters' is missing", "mannequin");
   expect_refused("characters = [\"mannequin\"]\n", 1, 1, "'format' is missing", "format = 1");
   expect_refused("format = 2\n", 1, 10, "'format'", "format = 1");
@@ -193,12 +193,19 @@ TEST(Recipe, RefusesWithThePlaceAndTheNearestName) {
   expect_refused(kHead + "fps = 30\n", 3, 1, "unknown key 'fps'", "below [settings]");
   expect_refused(kHead + "outputs = [\"glb\", \"gbl\"]\n", 3, 19, "unknown output 'gbl'",
                  "did you mean 'glb'?");
+}
+
+TEST(RecipeRefusal, InSettingsSaysWhereAndWhatIsNear) {
   expect_refused(kHead + "[settings]\nfsp = 30\n", 4, 1, "unknown setting 'fsp'", "did you mean 'fps'?");
   expect_refused(kHead + "[settings]\nfps = \"30\"\n", 4, 7, "'fps' is a text", "give a number, 1 to 1000");
   expect_refused(kHead + "[settings]\nfps = 0\n", 4, 7, "'fps': 0 is out of range", "1 to 1000");
   expect_refused(kHead + "[settings]\nuntil-rest = 1\n", 4, 14, "'until-rest' is a number", "true or false");
   expect_refused(kHead + "[settings]\nregion = 5\n", 4, 10, "'region' is a number", "quotes");
   expect_refused(kHead + "[settings]\nkeys = \"al\"\n", 4, 8, "unknown word 'al'", "did you mean 'all'?");
+  expect_refused(kHead + "[settings]\nhit = [\"head\"]\n", 4, 7, "several values", "[[matrix]]");
+}
+
+TEST(RecipeRefusal, InAMatrixSaysWhereAndWhatIsNear) {
   expect_refused(kHead + "[[matrix]]\nhit = [\"head\", \"haed\"]\n", 4, 16, "unknown segment 'haed'",
                  "did you mean 'head'?");
   expect_refused(kHead + "[[matrix]]\nhti = [\"head\"]\n", 4, 1, "unknown setting 'hti'",
@@ -207,8 +214,10 @@ TEST(Recipe, RefusesWithThePlaceAndTheNearestName) {
                  "did you mean 'variations'?");
   expect_refused(kHead + "[[matrix]]\nhit = []\n", 4, 7, "has no values", "at least one");
   expect_refused(kHead + "[[reaction]]\nhit = [\"head\"]\n", 4, 7, "several values", "[[matrix]]");
-  expect_refused(kHead + "[settings]\nhit = [\"head\"]\n", 4, 7, "several values", "[[matrix]]");
   expect_refused(kHead + "[[matrix]]\nvariations = 0\n", 4, 14, "whole number from 1 to", "whole number");
+}
+
+TEST(RecipeRefusal, InJitterAndNamesSaysWhereAndWhatIsNear) {
   expect_refused(kHead + "[[matrix]]\njitter = { direction = 5 }\n", 4, 12, "unknown jitter 'direction'",
                  "did you mean 'direction-deg'?");
   expect_refused(kHead + "[[matrix]]\njitter = { direction-deg = -5 }\n", 4, 28, "jitter of 'direction-deg'",
@@ -216,6 +225,9 @@ TEST(Recipe, RefusesWithThePlaceAndTheNearestName) {
   expect_refused(kHead + "[[matrix]]\nname = \"{hti}\"\n", 4, 8, "unknown part '{hti}'",
                  "did you mean 'hit'?");
   expect_refused(kHead + "[[matrix]]\nname = \"{hit\"\n", 4, 8, "{ without }", "{hit}");
+}
+
+TEST(RecipeRefusal, OfCharactersJointsAndSyntaxSaysWhere) {
   expect_refused(kHead + "[character.\"maneqin\"]\nfps = 30\n", 3, 12, "no character is named 'maneqin'",
                  "did you mean 'mannequin'?");
   expect_refused("format = 1\ncharacters = [\"none/*.glb\"]\n", 2, 15, "no file matches 'none/*.glb'",

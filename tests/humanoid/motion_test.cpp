@@ -66,6 +66,13 @@ Humanoid mapped(const Character& character) {
   return result ? *result : Humanoid{};
 }
 
+/// Angle between forearm and hand in the rest pose, against the neutral pose that the character is given.
+double resting_wrist_bend_deg(const Character& character) {
+  const BodyPose body = segments_of(character.skeleton, mapped(character), rest_pose(character.skeleton));
+  return degrees(
+      angle_between(body[index(Segment::forearm_r)].rotation, body[index(Segment::hand_r)].rotation));
+}
+
 TEST(Motion, ATPoseFrameReplacesAZeroPoseThatIsNone) {
   const Character original = figure();
   Pose standing;
@@ -179,10 +186,7 @@ TEST(Motion, NoHandIsRolledThatTurnsItsForearmToTheEndOfPronation) {
 TEST(Motion, FramesInWhichTheTrackerLosesAHandDoNotMoveIt) {
   Character character = figure({.arm_elevation_deg = 5.0});
   set_motion(character, frames_with_a_waving_hand(character, Vec3::UnitX(), true));
-  const Humanoid humanoid = mapped(character);
-  const BodyPose body = segments_of(character.skeleton, humanoid, rest_pose(character.skeleton));
-  EXPECT_LT(angle_between(body[index(Segment::forearm_r)].rotation, body[index(Segment::hand_r)].rotation),
-            radians(1.0));
+  EXPECT_LT(resting_wrist_bend_deg(character), 1.0);
 }
 
 TEST(Motion, TheNeutralPoseMayBeKeptThatOfTheRestPose) {
@@ -207,10 +211,7 @@ TEST(Motion, ACharacterWithAMeshKeepsItsOwnNeutralPose) {
   MeshPart part;
   part.node = 0;
   character.parts.push_back(part);
-  const Humanoid humanoid = mapped(character);
-  const BodyPose body = segments_of(character.skeleton, humanoid, rest_pose(character.skeleton));
-  EXPECT_LT(angle_between(body[index(Segment::forearm_r)].rotation, body[index(Segment::hand_r)].rotation),
-            radians(1));
+  EXPECT_LT(resting_wrist_bend_deg(character), 1.0);
 }
 
 TEST(Motion, TheElbowsBendShowsItsAxis) {

@@ -5,9 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "support/tab_separated.h"
 
 namespace ukemi {
 
@@ -25,13 +26,6 @@ struct ExtraFile {
   std::string file;     // relative to the folder
   std::string verdict;  // "humanoid", "refused-nonhumanoid" or "malformed"
 };
-
-inline std::vector<std::string> tab_separated(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, '\t');) cells.push_back(cell);
-  return cells;
-}
 
 /// The rows whose file starts with `prefix`; none where there is no manifest.
 inline std::vector<ExtraFile> extra_files(const std::filesystem::path& folder,
