@@ -16,6 +16,11 @@ std::optional<std::string> written(const Reaction& reaction, const std::string& 
   return value == reaction.written.end() ? std::nullopt : std::optional(value->second);
 }
 
+template <typename Number>
+Json number_or_null(const Number& number) {
+  return number;
+}
+Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 Json text_or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
 Json path_or_null(const fs::path& path, bool made) {
   return made && !path.empty() ? Json(path.generic_string()) : Json(nullptr);
@@ -40,7 +45,7 @@ Json settings_json(const Reaction& reaction) {
   json["scene"] = text_or_null(settings.scene);
   json["pose"] = text_or_null(settings.pose);
   json["clip"] = text_or_null(settings.clip);
-  json["at_s"] = settings.at_s ? Json(*settings.at_s) : Json(nullptr);
+  json["at_s"] = number_or_null(settings.at_s);
   json["variation"] = reaction.variation;
   json["seed"] = reaction.seed;
   json["varied"] = varied_json(reaction);
@@ -49,17 +54,10 @@ Json settings_json(const Reaction& reaction) {
 
 Json figures_json(const ReactionFigures& figures) {
   Json json;
-  json["excess_max_deg"] = figures.excess_max_deg;
-  json["over_1deg"] = figures.over_1deg;
-  json["travel_m"] = figures.travel_m;
-  json["momentum_n_s"] = figures.momentum_n_s;
-  json["rest_time_s"] = figures.rest_time_s ? Json(*figures.rest_time_s) : Json(nullptr);
-  json["settled"] = figures.rest_time_s.has_value();
-  json["duration_s"] = figures.duration_s;
-  json["joint_separation_max_m"] = figures.joint_separation_max_m;
-  json["energy_gain_max_j"] = figures.energy_gain_max_j;
-  json["frames"] = figures.frames;
-  json["keys"] = figures.keys;
+  for_each_figure(figures, [&](std::string_view key, const auto& figure) {
+    json[std::string(key)] = number_or_null(figure);
+    if (key == "rest_time_s") json["settled"] = figures.rest_time_s.has_value();
+  });
   return json;
 }
 
@@ -116,11 +114,14 @@ const std::vector<std::string> kOwn = {"character", "name", "status"};
 const std::vector<std::string> kSettings = {"hit",  "from", "preset",    "scene", "pose",
                                             "clip", "at_s", "variation", "seed"};
 const std::vector<std::string> kVaried = {"from", "strength", "aim_up_m", "aim_left_m"};
-const std::vector<std::string> kFigures = {
-    "excess_max_deg",    "over_1deg", "travel_m",   "momentum_n_s",
-    "rest_time_s",       "settled",   "duration_s", "joint_separation_max_m",
-    "energy_gain_max_j", "frames",    "keys"};
 const std::vector<std::string> kRest = {"error", "warnings", "outputs", "report", "sheet", "digest"};
+
+std::vector<std::string> figure_keys() {
+  const Json figures = figures_json({});
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : figures.items()) keys.push_back(key);
+  return keys;
+}
 
 void add_fields(const Json& object, const std::vector<std::string>& keys, std::vector<std::string>& fields) {
   for (const std::string& key : keys)
@@ -155,10 +156,11 @@ std::string manifest_json(const Manifest& manifest) {
 }
 
 std::string manifest_csv(const Manifest& manifest) {
+  const std::vector<std::string> figures = figure_keys();
   std::vector<std::string> header = kOwn;
   header.insert(header.end(), kSettings.begin(), kSettings.end());
   for (const std::string& key : kVaried) header.push_back("varied_" + key);
-  header.insert(header.end(), kFigures.begin(), kFigures.end());
+  header.insert(header.end(), figures.begin(), figures.end());
   header.insert(header.end(), kRest.begin(), kRest.end());
   std::string text = fmt::format("{}\r\n", fmt::join(header, ","));
   for (const ManifestEntry& entry : manifest.entries) {
@@ -167,7 +169,7 @@ std::string manifest_csv(const Manifest& manifest) {
     add_fields(json, kOwn, fields);
     add_fields(json["settings"], kSettings, fields);
     add_fields(json["settings"]["varied"], kVaried, fields);
-    add_fields(json["figures"], kFigures, fields);
+    add_fields(json["figures"], figures, fields);
     add_fields(json, kRest, fields);
     text += fmt::format("{}\r\n", fmt::join(fields, ","));
   }

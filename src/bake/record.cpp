@@ -8,33 +8,29 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+template <typename Number>
+void take(const Json& json, Number& number) {
+  number = json;
+}
+void take(const Json& json, std::optional<double>& number) {
+  if (!json.is_null()) number = json.get<double>();
+}
+
+template <typename Number>
+Json number_or_null(const Number& number) {
+  return number;
+}
+Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
 Json to_json(const ReactionFigures& figures) {
   Json json;
-  json["excess_max_deg"] = figures.excess_max_deg;
-  json["over_1deg"] = figures.over_1deg;
-  json["travel_m"] = figures.travel_m;
-  json["momentum_n_s"] = figures.momentum_n_s;
-  json["rest_time_s"] = figures.rest_time_s ? Json(*figures.rest_time_s) : Json(nullptr);
-  json["duration_s"] = figures.duration_s;
-  json["joint_separation_max_m"] = figures.joint_separation_max_m;
-  json["energy_gain_max_j"] = figures.energy_gain_max_j;
-  json["frames"] = figures.frames;
-  json["keys"] = figures.keys;
+  for_each_figure(figures, [&](const char* key, const auto& figure) { json[key] = number_or_null(figure); });
   return json;
 }
 
 ReactionFigures figures_from(const Json& json) {
   ReactionFigures figures;
-  figures.excess_max_deg = json.at("excess_max_deg");
-  figures.over_1deg = json.at("over_1deg");
-  figures.travel_m = json.at("travel_m");
-  figures.momentum_n_s = json.at("momentum_n_s");
-  if (!json.at("rest_time_s").is_null()) figures.rest_time_s = json.at("rest_time_s").get<double>();
-  figures.duration_s = json.at("duration_s");
-  figures.joint_separation_max_m = json.at("joint_separation_max_m");
-  figures.energy_gain_max_j = json.at("energy_gain_max_j");
-  figures.frames = json.at("frames");
-  figures.keys = json.at("keys");
+  for_each_figure(figures, [&](const char* key, auto& figure) { take(json.at(key), figure); });
   return figures;
 }
 

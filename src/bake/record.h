@@ -26,6 +26,21 @@ struct ReactionFigures {
 };
 ReactionFigures figures_of(const BakedFile& baked);
 
+/// Calls visit(key, figure) for each, in the order and under the keys of files.
+template <typename Figures, typename Visit>
+void for_each_figure(Figures& figures, const Visit& visit) {
+  visit("excess_max_deg", figures.excess_max_deg);
+  visit("over_1deg", figures.over_1deg);
+  visit("travel_m", figures.travel_m);
+  visit("momentum_n_s", figures.momentum_n_s);
+  visit("rest_time_s", figures.rest_time_s);
+  visit("duration_s", figures.duration_s);
+  visit("joint_separation_max_m", figures.joint_separation_max_m);
+  visit("energy_gain_max_j", figures.energy_gain_max_j);
+  visit("frames", figures.frames);
+  visit("keys", figures.keys);
+}
+
 struct WrittenFile {
   std::string name;  // relative to the batch's folder
   std::uint64_t bytes = 0;
