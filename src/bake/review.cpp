@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include "bake/review_clip.h"
 #include "bake/review_json.h"
 #include "bake/review_sources.h"
+#include "base/errors.h"
 #include "base/files.h"
 
 namespace ukemi {
@@ -23,9 +25,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxAssetBytes = 16u << 20;
+constexpr std::size_t kMaxTableBytes = 1u << 30;
 constexpr std::string_view kMarkOfOurPage = "<meta name=\"generator\" content=\"ukemi";
 constexpr const char* kPageFolder = "review";
 constexpr const char* kProgramFiles[] = {"review.js", "review.css"};
+constexpr const char* kTableFile = "reactions.js";
+constexpr const char* kManifestKey = "manifest_sha256";
 constexpr std::size_t kLongestReadableName = 60;
 
 /// What became of one source.
@@ -65,13 +70,8 @@ class PageFolder {
     for (const char* below : {"clips", "characters", "thumbnails"}) {
       fs::create_directories(folder_ / below, error);
       if (error)
-        return Error{ErrorKind::output,
-                     (folder_ / below).string(),
-                     0,
-                     0,
-                     "",
-                     "cannot make the folder: " + error.message(),
-                     "check the folder's permissions"};
+        return output_error(folder_ / below, "cannot make the folder: " + error.message(),
+                            "check the folder's permissions");
     }
     return Done{};
   }
@@ -109,14 +109,10 @@ Status check_ours(const fs::path& folder) {
     const auto bytes = read_file(page, kMaxAssetBytes);
     const std::string text = bytes ? std::string(bytes->begin(), bytes->end()) : "";
     if (text.find(kMarkOfOurPage) == std::string::npos)
-      return Error{
-          ErrorKind::output, page.string(), 0, 0, "", "is not a page of this program and would be lost",
-          "move it away"};
+      return output_error(page, "is not a page of this program and would be lost", "move it away");
   } else if (fs::exists(folder / kPageFolder, error) &&
              !fs::exists(folder / kPageFolder / "review.js", error)) {
-    return Error{
-        ErrorKind::output, (folder / kPageFolder).string(), 0, 0, "", "is not a folder of this program",
-        "move it away"};
+    return output_error(folder / kPageFolder, "is not a folder of this program", "move it away");
   }
   return Done{};
 }
@@ -235,10 +231,12 @@ Json reaction_json(const ReviewSource& source, const Made& made) {
   return json;
 }
 
-std::string table_json(const ReviewSources& sources, const std::vector<Made>& made) {
+std::string table_json(const ReviewSources& sources, const std::vector<Made>& made,
+                       const std::string& manifest) {
   Json json;
   json["format"] = 1;
   json["generator"] = generator();
+  json[kManifestKey] = text_or_null(manifest);
   json["recipe"] = text_or_null(sources.recipe);
   json["reactions"] = Json::array();
   for (std::size_t i = 0; i < made.size(); ++i)
@@ -254,8 +252,8 @@ Status write_page(const fs::path& folder, PageFolder& page, const ReviewSources&
     if (!text) return text.error();
     if (Status status = page.write(file, *text); !status) return status;
   }
-  const std::string table = table_json(sources, made);
-  if (Status status = page.write("reactions.js", script("reactions", "all", table)); !status) return status;
+  const std::string table = table_json(sources, made, manifest_digest(folder));
+  if (Status status = page.write(kTableFile, script("reactions", "all", table)); !status) return status;
   auto html = read_asset("index.html");
   if (!html) return html.error();
   return write_file(folder / "index.html", *html);
@@ -273,7 +271,40 @@ Review counted(const fs::path& folder, const std::vector<Made>& made) {
   return review;
 }
 
+std::string text_of_file(const fs::path& path) {
+  const auto bytes = read_file(path, kMaxTableBytes);
+  return bytes ? std::string(text_of(*bytes)) : std::string();
+}
+
+bool is_our_program(const fs::path& page) {
+  for (const char* file : kProgramFiles)
+    if (const auto ours = read_asset(file);
+        !ours || text_of_file(page.parent_path() / kPageFolder / file) != *ours)
+      return false;
+  const auto html = read_asset("index.html");
+  return html && text_of_file(page) == *html;
+}
+
 }  // namespace
+
+bool review_is_current(const fs::path& folder) {
+  const fs::path page = folder / "index.html";
+  const std::string manifest = manifest_digest(folder);
+  const std::string table = text_of_file(folder / kPageFolder / kTableFile);
+  if (manifest.empty() || table.find(fmt::format("\"{}\":\"{}\"", kManifestKey, manifest)) == table.npos)
+    return false;
+  Diagnostics unheard;
+  const auto sources = review_sources(folder, unheard);
+  if (!sources || !is_our_program(page)) return false;
+  std::error_code error;
+  const auto made = fs::last_write_time(page, error);
+  const auto is_newer = [&](const fs::path& file) {
+    return !file.empty() && (fs::last_write_time(folder / file, error) > made || error);
+  };
+  return !error &&
+         std::none_of(sources->reactions.begin(), sources->reactions.end(),
+                      [&](const auto& source) { return is_newer(source.clip) || is_newer(source.report); });
+}
 
 Result<Review> write_review(const fs::path& folder, const ReviewSettings& settings, Diagnostics& diagnostics,
                             const std::function<void(int, int)>& progress) {

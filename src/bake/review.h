@@ -33,4 +33,8 @@ Result<Review> write_review(const std::filesystem::path& folder, const ReviewSet
                             Diagnostics& diagnostics,
                             const std::function<void(int done, int total)>& progress = {});
 
+/// Whether FOLDER has the page that write_review would make of its manifest now: made from the same manifest
+/// by the same program, and no clip or report is newer than it.
+bool review_is_current(const std::filesystem::path& folder);
+
 }  // namespace ukemi

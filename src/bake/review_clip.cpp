@@ -12,6 +12,7 @@
 #include "bake/review_thumbnail.h"
 #include "bake/rom_figures.h"
 #include "bake/start.h"
+#include "base/errors.h"
 #include "base/files.h"
 #include "load/load.h"
 
@@ -100,13 +101,7 @@ Result<Humanoid> humanoid_of(const Character& character, const Told& told, Diagn
 
 Result<std::size_t> clip_index(const Character& character, const Told& told) {
   if (character.animations.empty())
-    return Error{ErrorKind::input,
-                 character.path.string(),
-                 0,
-                 0,
-                 "",
-                 "holds no clip",
-                 "bake it, or remove it from the folder"};
+    return input_error(character.path, "holds no clip", "bake it, or remove it from the folder");
   if (told.clip) {
     for (std::size_t i = character.animations.size(); i-- > 0;)
       if (character.animations[i].name == *told.clip) return i;

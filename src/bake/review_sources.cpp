@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "bake/digest.h"
 #include "bake/outputs.h"
+#include "base/errors.h"
 #include "base/files.h"
 
 namespace ukemi {
@@ -19,10 +21,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMaxJsonBytes = 256u << 20;
 constexpr const char* kManifest = "manifest.json";
 constexpr const char* kPageFolder = "review";
-
-Error input_error(const fs::path& path, std::string what, std::string fix) {
-  return {ErrorKind::input, path.string(), 0, 0, "", std::move(what), std::move(fix)};
-}
 
 Result<Json> read_json(const fs::path& path) {
   const auto bytes = read_file(path, kMaxJsonBytes);
@@ -248,6 +246,11 @@ Result<ReviewSources> review_sources(const fs::path& folder, Diagnostics& diagno
                        "name the folder that ukemi batch or ukemi bake wrote to");
   if (fs::exists(folder / kManifest, error)) return sources_of_manifest(folder, diagnostics);
   return sources_of_folder(folder, diagnostics);
+}
+
+std::string manifest_digest(const fs::path& folder) {
+  const auto bytes = read_file(folder / kManifest, kMaxJsonBytes);
+  return bytes ? digest_of(*bytes) : std::string();
 }
 
 }  // namespace ukemi

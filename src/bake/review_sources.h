@@ -34,4 +34,7 @@ struct ReviewSources {
 /// Errors: see write_review.
 Result<ReviewSources> review_sources(const std::filesystem::path& folder, Diagnostics& diagnostics);
 
+/// SHA-256 of the folder's manifest; "" where there is none.
+std::string manifest_digest(const std::filesystem::path& folder);
+
 }  // namespace ukemi
