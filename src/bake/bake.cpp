@@ -16,6 +16,7 @@
 #include "bake/settings.h"
 #include "bake/sheet.h"
 #include "bake/smooth.h"
+#include "base/errors.h"
 #include "base/files.h"
 #include "body/ground.h"
 #include "export/additive.h"
@@ -168,24 +169,20 @@ Status prepare_files(const Character& character, const BakeSettings& settings, B
   return Done{};
 }
 
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
-
 /// Settings that do not go together.
 Status check_combinations(const BakeSettings& settings) {
   const bool to_bvh = std::any_of(settings.outputs.begin(), settings.outputs.end(), [](const fs::path& path) {
     return output_format(path) == OutputFormat::bvh;
   });
   if (settings.smooth_hz && *settings.smooth_hz >= 0.5 * settings.simulation.fps)
-    return usage(fmt::format("--smooth {} is not below half of the {} frames per second", *settings.smooth_hz,
-                             settings.simulation.fps),
-                 "give a lower cut-off, or more --fps");
+    return usage_error(fmt::format("--smooth {} is not below half of the {} frames per second",
+                                   *settings.smooth_hz, settings.simulation.fps),
+                       "give a lower cut-off, or more --fps");
   if (settings.additive && to_bvh)
-    return usage("--additive is for glTF: a BVH cannot say what its motion is added to",
-                 "leave the .bvh away, or write it by a bake of its own");
+    return usage_error("--additive is for glTF: a BVH cannot say what its motion is added to",
+                       "leave the .bvh away, or write it by a bake of its own");
   if (settings.append && to_bvh)
-    return usage("--append is for glTF: a BVH holds one motion", "leave the .bvh away");
+    return usage_error("--append is for glTF: a BVH holds one motion", "leave the .bvh away");
   return Done{};
 }
 
@@ -225,7 +222,7 @@ Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings&
   if (!start) return start.error();
   outcome.start = std::move(*start);
   if (settings.recover_s && settings.recover_to == RecoverTo::clip && !outcome.start.motion)
-    return usage("--to clip needs a start clip to go back to", "add --clip NAME, or take --to rest");
+    return usage_error("--to clip needs a start clip to go back to", "add --clip NAME, or take --to rest");
   auto body = build_body(character, outcome.humanoid, outcome.start.pose, outcome.start.segments,
                          BodyOptions{settings.mass_kg.value_or(0.0), settings.sex}, diagnostics);
   if (!body) return body.error();

@@ -8,6 +8,7 @@
 #include "bake/batch_work.h"
 #include "bake/inputs.h"
 #include "bake/rejects.h"
+#include "base/errors.h"
 #include "base/files.h"
 
 namespace ukemi {
@@ -96,13 +97,8 @@ Status make_folders(const BatchPlan& plan, const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder / character.name, error);
     if (error)
-      return Error{ErrorKind::output,
-                   (folder / character.name).string(),
-                   0,
-                   0,
-                   "",
-                   "cannot make the folder: " + error.message(),
-                   "choose another folder"};
+      return output_error(folder / character.name, "cannot make the folder: " + error.message(),
+                          "choose another folder");
   }
   return Done{};
 }
@@ -255,14 +251,10 @@ Result<BatchPlan> plan_batch(const BatchSettings& settings) {
   const bool may_go_on = settings.resume || settings.force || !settings.merge.empty() ||
                          !settings.rejects.empty() || !settings.shard.whole();
   if (!plan.history.empty() && !may_go_on)
-    return Error{ErrorKind::usage,
-                 settings.folder.string(),
-                 0,
-                 0,
-                 "",
-                 "holds a batch already",
-                 "add --resume to bake what is missing or changed, --force to bake everything again, or "
-                 "choose another folder"};
+    return usage_error(
+        settings.folder, "holds a batch already",
+        "add --resume to bake what is missing or changed, --force to bake everything again, or "
+        "choose another folder");
   if (const Status status = expand(plan); !status) return status.error();
   if (!settings.rejects.empty()) {
     if (const Status status = take_rejects(settings.rejects, plan); !status) return status.error();

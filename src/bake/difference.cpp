@@ -9,6 +9,7 @@
 
 #include "bake/bake.h"
 #include "bake/inspect.h"
+#include "base/errors.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -170,8 +171,7 @@ Similarity placement(const Character& character, Diagnostics& diagnostics) {
 
 Result<const Animation*> clip_to_compare(const Character& character, const DifferenceSettings& settings) {
   if (character.animations.empty())
-    return Error{ErrorKind::input, character.path.string(),  0, 0, "",
-                 "holds no clip",  "name a file with a clip"};
+    return input_error(character.path, "holds no clip", "name a file with a clip");
   if (!settings.clip) return &character.animations.back();
   const auto found = find_clip(character, *settings.clip);
   if (!found) return found.error();
@@ -202,13 +202,9 @@ Result<Difference> difference_of(const PlacedClip& a, const PlacedClip& b,
   difference.duration_b_s = b.animation->duration_s();
   std::vector<Match> matches = match_joints(a.character->skeleton, b.character->skeleton, difference);
   if (matches.empty())
-    return Error{ErrorKind::input,
-                 b.character->path.string(),
-                 0,
-                 0,
-                 "",
-                 "no joint has the same name as one of " + a.character->path.string(),
-                 "compare clips of the same skeleton"};
+    return input_error(b.character->path,
+                       "no joint has the same name as one of " + a.character->path.string(),
+                       "compare clips of the same skeleton");
   Comparison comparison(a, b, std::move(matches));
   difference.same_axes = comparison.same_axes();
   difference.rate =

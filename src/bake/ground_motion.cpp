@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/errors.h"
+
 namespace ukemi {
 namespace {
 
@@ -68,13 +70,8 @@ Status add_root_joint(const Character& character, ExportedClip& exported) try {
   if (!exported.humanoid.reference.empty()) exported.humanoid.reference.emplace_back();
   return Done{};
 } catch (const std::exception& e) {
-  return Error{ErrorKind::input,
-               character.path.string(),
-               0,
-               0,
-               "",
-               std::string("the glTF document cannot take a root joint: ") + e.what(),
-               "check the file with the Khronos glTF validator"};
+  return input_error(character.path, std::string("the glTF document cannot take a root joint: ") + e.what(),
+                     "check the file with the Khronos glTF validator");
 }
 
 }  // namespace

@@ -8,8 +8,9 @@
 #include <cstdint>
 
 #include "bake/bake.h"
-#include "bake/nearest.h"
+#include "base/errors.h"
 #include "base/files.h"
+#include "base/nearest.h"
 #include "base/numbers.h"
 
 namespace ukemi {
@@ -19,19 +20,9 @@ constexpr std::int64_t kPresetFormat = 1;
 const std::vector<std::string> kSceneNames = {"ball", "slope", "fall", "push", "impulse", "box"};
 const std::vector<std::string> kDirectionNames = {"front", "back", "left", "right", "above"};
 
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
-
 Error preset_error(const std::string& file, const toml::source_region& where, std::string what,
                    std::string fix) {
-  return {ErrorKind::input,
-          file,
-          static_cast<int>(where.begin.line),
-          static_cast<int>(where.begin.column),
-          "",
-          std::move(what),
-          std::move(fix)};
+  return error_at(where.begin, input_error(file, std::move(what), std::move(fix)));
 }
 
 /// Reads the keys of one preset table; the first error stays.
@@ -86,7 +77,7 @@ class PresetReader {
     if (!node) return;
     const auto text = node->value_exact<std::string>();
     auto scene = text ? parse_scene(*text)
-                      : Result<SceneKind>(usage("'scene' is not a word", "write scene = \"ball\""));
+                      : Result<SceneKind>(usage_error("'scene' is not a word", "write scene = \"ball\""));
     if (scene)
       preset_.scene = *scene;
     else
@@ -165,7 +156,7 @@ Result<ImpactPreset> preset_named(const std::string& text) {
     if (preset.name == text) return preset;
     names.push_back(preset.name);
   }
-  return usage(fmt::format("unknown preset '{}'", text), suggestion(text, names));
+  return usage_error(fmt::format("unknown preset '{}'", text), suggestion(text, names));
 }
 
 }  // namespace
@@ -198,13 +189,13 @@ Result<Direction> parse_direction(std::string_view text) {
   const std::string what = fmt::format("'{}' is not a direction", text);
   if (!azimuth || !elevation) {
     const std::string near = nearest_word(text, kDirectionNames);
-    return usage(what, near.empty()
-                           ? "give front, back, left, right, above, or AZIMUTH[,ELEVATION] in degrees"
-                           : fmt::format("did you mean '{}'?", near));
+    return usage_error(what, near.empty()
+                                 ? "give front, back, left, right, above, or AZIMUTH[,ELEVATION] in degrees"
+                                 : fmt::format("did you mean '{}'?", near));
   }
   if (std::abs(*azimuth) > 360.0 || std::abs(*elevation) > 90.0)
-    return usage(what + ": out of range",
-                 "give an azimuth from -360 to 360 and an elevation from -90 to 90 degrees");
+    return usage_error(what + ": out of range",
+                       "give an azimuth from -360 to 360 and an elevation from -90 to 90 degrees");
   return Direction{radians(*azimuth), radians(*elevation)};
 }
 
@@ -220,13 +211,13 @@ Result<Segment> parse_segment(std::string_view text) {
   if (const auto segment = segment_named(text)) return *segment;
   std::vector<std::string> names;
   for (int i = 0; i < kSegmentCount; ++i) names.emplace_back(name(segment_at(i)));
-  return usage(fmt::format("unknown segment '{}'", text), suggestion(text, names));
+  return usage_error(fmt::format("unknown segment '{}'", text), suggestion(text, names));
 }
 
 Result<SceneKind> parse_scene(std::string_view text) {
   for (std::size_t i = 0; i < kSceneNames.size(); ++i)
     if (text == kSceneNames[i]) return static_cast<SceneKind>(i);
-  return usage(fmt::format("unknown scene '{}'", text), suggestion(text, kSceneNames));
+  return usage_error(fmt::format("unknown scene '{}'", text), suggestion(text, kSceneNames));
 }
 
 std::string_view name(SceneKind scene) { return kSceneNames[static_cast<std::size_t>(scene)]; }

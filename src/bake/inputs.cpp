@@ -7,29 +7,12 @@
 #include "bake/digest.h"
 #include "bake/settings.h"
 #include "base/files.h"
+#include "base/uri.h"
 #include "load/load.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;
 namespace {
-
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-std::string percent_decoded(const std::string& uri) {
-  std::string text;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    const bool coded =
-        uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0;
-    text += coded ? static_cast<char>(16 * hex_digit(uri[i + 1]) + hex_digit(uri[i + 2])) : uri[i];
-    if (coded) i += 2;
-  }
-  return text;
-}
 
 /// Files beside a .gltf that its buffers and images name. What is no JSON names none: loading refuses it.
 std::vector<fs::path> files_named_by(const fs::path& gltf, std::span<const std::uint8_t> bytes) {

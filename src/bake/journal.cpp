@@ -11,6 +11,8 @@
 #include <string_view>
 
 #include "bake/digest.h"
+#include "base/descriptors.h"
+#include "base/errors.h"
 #include "base/files.h"
 
 namespace ukemi {
@@ -21,14 +23,21 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMaxBytes = 4ull << 30;
 
+/// Locks the file for this process; false where another has it. The workers of a batch that was killed hold
+/// its lock for the moment that they outlive it.
+bool locked(int fd) {
+  constexpr int kTries = 100;
+  constexpr useconds_t kPause_us = 20000;
+  for (int i = 0; i < kTries; ++i) {
+    if (flock(fd, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return true;
+    usleep(kPause_us);
+  }
+  return false;
+}
+
 Error cannot_write(const fs::path& path, const std::string& why) {
-  return {ErrorKind::output,
-          path.string(),
-          0,
-          0,
-          "",
-          "cannot write: " + why,
-          "choose a folder that has space and that you may write to"};
+  return output_error(path, "cannot write: " + why,
+                      "choose a folder that has space and that you may write to");
 }
 
 void take_verdict(std::string_view line, Verdicts& verdicts) {
@@ -90,14 +99,9 @@ Result<Journal> Journal::open(const fs::path& folder, const std::string& name) {
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (fd < 0) return cannot_write(path, std::strerror(errno));
   Journal journal(path, fd);
-  if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    return Error{ErrorKind::output,
-                 folder.string(),
-                 0,
-                 0,
-                 "",
-                 "another batch is writing to this folder",
-                 "wait until it has ended, or choose another folder"};
+  if (!locked(fd))
+    return output_error(folder, "another batch is writing to this folder",
+                        "wait until it has ended, or choose another folder");
   const off_t size = lseek(fd, 0, SEEK_END);
   char last = '\n';
   if (size > 0 && pread(fd, &last, 1, size - 1) == 1 && last != '\n')
@@ -120,13 +124,7 @@ Status Journal::add_verdict(const std::string& character, const std::string& nam
 
 Status Journal::add_line(std::string line) {
   line += '\n';
-  std::string_view rest = line;
-  while (!rest.empty()) {
-    const ssize_t n = ::write(fd_, rest.data(), rest.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return cannot_write(path_, std::strerror(errno));
-    rest.remove_prefix(static_cast<std::size_t>(n));
-  }
+  if (!write_all(fd_, line)) return cannot_write(path_, std::strerror(errno));
   return Done{};
 }
 

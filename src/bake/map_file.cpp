@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bake/impact.h"
+#include "base/errors.h"
 #include "base/files.h"
 
 namespace ukemi {
@@ -18,13 +19,7 @@ constexpr std::size_t kMostBytes = 1 << 20;
 
 Error map_error(const std::string& file, std::string what, std::string fix,
                 const toml::source_region& where = {}) {
-  return {ErrorKind::input,
-          file,
-          static_cast<int>(where.begin.line),
-          static_cast<int>(where.begin.column),
-          "",
-          std::move(what),
-          std::move(fix)};
+  return error_at(where.begin, input_error(file, std::move(what), std::move(fix)));
 }
 
 Error no_text(const std::string& file, std::string_view segment, const toml::source_region& where = {}) {

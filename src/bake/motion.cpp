@@ -10,6 +10,7 @@
 
 #include "bake/inspect.h"
 #include "bake/start.h"
+#include "base/errors.h"
 #include "humanoid/transfer.h"
 #include "load/load.h"
 
@@ -125,13 +126,8 @@ Result<Animation> motion_of_file(const Character& character, const Humanoid& hum
   const auto source = open(text, diagnostics);
   if (!source) return source.error();
   if (!source->clip)
-    return Error{ErrorKind::input,
-                 source->character.path.string(),
-                 0,
-                 0,
-                 "",
-                 "holds no clip",
-                 "name a file with a clip, or use it as --pose"};
+    return input_error(source->character.path, "holds no clip",
+                       "name a file with a clip, or use it as --pose");
   const Animation& clip = source->character.animations[*source->clip];
   const Transfer transfer(character, humanoid, source->character, source->humanoid);
   const std::vector<double> times = key_times(clip);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "bake/bake.h"
+#include "base/errors.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;
@@ -18,12 +19,8 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-Error usage(const fs::path& path, std::string what, std::string fix) {
-  return {ErrorKind::usage, path.string(), 0, 0, "", std::move(what), std::move(fix)};
-}
-
 Error cannot_write(const fs::path& path, const std::string& why, std::string fix) {
-  return {ErrorKind::output, path.string(), 0, 0, "", "cannot write: " + why, std::move(fix)};
+  return output_error(path, "cannot write: " + why, std::move(fix));
 }
 
 bool same_file(const fs::path& a, const fs::path& b) {
@@ -62,30 +59,30 @@ Status check_writable(const fs::path& path) {
 
 Status check_picture_name(const fs::path& path) {
   if (lower_extension(path) == ".png") return Done{};
-  return usage(path, "unknown picture format", "let the name end in .png");
+  return usage_error(path, "unknown picture format", "let the name end in .png");
 }
 
 Status check_outputs(const std::string& character, const BakeSettings& settings) {
   std::vector<fs::path> paths = settings.outputs;
   for (const fs::path& path : settings.outputs)
     if (!output_format(path))
-      return usage(path, "unknown output format", "let the name end in .glb, .gltf or .bvh");
+      return usage_error(path, "unknown output format", "let the name end in .glb, .gltf or .bvh");
   if (!settings.sheet.empty()) {
     if (const Status status = check_picture_name(settings.sheet); !status) return status.error();
     paths.push_back(settings.sheet);
   }
   if (!settings.preview.empty()) {
     if (lower_extension(settings.preview) != ".webp")
-      return usage(settings.preview, "unknown format of a moving picture", "let the name end in .webp");
+      return usage_error(settings.preview, "unknown format of a moving picture", "let the name end in .webp");
     paths.push_back(settings.preview);
   }
   if (!settings.report.empty()) paths.push_back(settings.report);
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (same_file(paths[i], character))
-      return usage(paths[i], "would overwrite the character", "choose another name for the output");
+      return usage_error(paths[i], "would overwrite the character", "choose another name for the output");
     for (std::size_t k = 0; k < i; ++k)
       if (same_file(paths[i], paths[k]))
-        return usage(paths[i], "is named twice as an output", "name each output once");
+        return usage_error(paths[i], "is named twice as an output", "name each output once");
     if (const Status status = check_writable(paths[i]); !status) return status.error();
   }
   return Done{};

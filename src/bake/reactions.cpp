@@ -10,6 +10,7 @@
 #include "bake/random.h"
 #include "bake/recipe.h"
 #include "bake/settings.h"
+#include "base/errors.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;
@@ -155,13 +156,8 @@ class Expansion {
     }
     for (int variation = 0; variation < matrix.variations; ++variation) {
       if (reactions_.size() >= kMostReactions)
-        return Error{ErrorKind::usage,
-                     recipe_.file,
-                     0,
-                     0,
-                     "",
-                     fmt::format("describes more than {} reactions", kMostReactions),
-                     "split it into several recipes"};
+        return usage_error(recipe_.file, fmt::format("describes more than {} reactions", kMostReactions),
+                           "split it into several recipes");
       reactions_.push_back(reaction_of(matrix, *settings, variation));
     }
     return Done{};

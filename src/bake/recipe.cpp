@@ -11,9 +11,10 @@
 #include <set>
 
 #include "bake/file_names.h"
-#include "bake/nearest.h"
 #include "bake/settings.h"
+#include "base/errors.h"
 #include "base/files.h"
+#include "base/nearest.h"
 #include "restrict/region_tables.h"
 
 namespace ukemi {
@@ -532,14 +533,8 @@ Result<Recipe> parse_recipe(std::string_view toml, const fs::path& file) {
   } catch (const Fault& fault) {
     return fault.error;
   } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    return Error{ErrorKind::usage,
-                 file.string(),
-                 static_cast<int>(at.line),
-                 static_cast<int>(at.column),
-                 "",
-                 std::string(error.description()),
-                 "correct the TOML syntax"};
+    return error_at(error.source().begin,
+                    usage_error(file, std::string(error.description()), "correct the TOML syntax"));
   }
 }
 

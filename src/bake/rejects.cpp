@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/errors.h"
 #include "base/files.h"
 
 namespace ukemi {
@@ -15,13 +16,7 @@ constexpr std::size_t kMaxBytes = 64u << 20;
 using Json = nlohmann::json;
 
 Error refused(const fs::path& file, std::string what) {
-  return {ErrorKind::input,
-          file.string(),
-          0,
-          0,
-          "",
-          std::move(what),
-          "give the file that the review page saves for this batch"};
+  return input_error(file, std::move(what), "give the file that the review page saves for this batch");
 }
 
 /// Index of the reaction that an entry names.

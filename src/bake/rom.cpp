@@ -8,8 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/bake.h"
-#include "bake/nearest.h"
 #include "bake/report.h"
+#include "base/errors.h"
+#include "base/nearest.h"
 #include "load/load.h"
 #include "render/rom_plot.h"
 #include "restrict/limit_rows.h"
@@ -26,17 +27,13 @@ constexpr double kSwingDuration = 2.0;  // s
 constexpr double kSwingRate = 480.0;    // 1/s
 constexpr int kOverviewColumns = 7;
 
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
-
 Status check_settings(const RomSettings& settings) {
   const int uses = settings.check.has_value() + settings.state.has_value() + settings.swing;
-  if (uses > 1) return usage("--check, --state and --swing exclude each other", "give one of them");
-  if (settings.clip && !settings.check) return usage("--clip needs a file", "add --check FILE");
+  if (uses > 1) return usage_error("--check, --state and --swing exclude each other", "give one of them");
+  if (settings.clip && !settings.check) return usage_error("--clip needs a file", "add --check FILE");
   if (settings.joint) return Done{};
-  if (settings.state) return usage("--state needs a joint", "add --joint NAME");
-  if (settings.swing) return usage("--swing needs a joint", "add --joint NAME");
+  if (settings.state) return usage_error("--state needs a joint", "add --joint NAME");
+  if (settings.swing) return usage_error("--swing needs a joint", "add --joint NAME");
   return Done{};
 }
 
@@ -50,7 +47,8 @@ Result<std::vector<Joint>> joints_of(const RomSettings& settings) {
   if (!settings.joint) return all;
   const auto joint = joint_named(*settings.joint);
   if (!joint)
-    return usage(fmt::format("unknown joint '{}'", *settings.joint), suggestion(*settings.joint, names));
+    return usage_error(fmt::format("unknown joint '{}'", *settings.joint),
+                       suggestion(*settings.joint, names));
   return std::vector<Joint>{*joint};
 }
 
@@ -80,8 +78,7 @@ Result<RomCheck> check_clip(const RomSettings& settings, const RangeOfMotion& ra
   const auto character = load_to_check(settings, wanted, diagnostics);
   if (!character) return character.error();
   if (character->animations.empty())
-    return Error{ErrorKind::input, character->path.string(),   0, 0, "",
-                 "holds no clips", "choose a file with motion"};
+    return input_error(character->path, "holds no clips", "choose a file with motion");
   std::size_t clip = character->animations.size() - 1;
   if (wanted) {
     const auto found = find_clip(*character, *wanted);

@@ -12,14 +12,11 @@
 #include "bake/bake.h"
 #include "bake/impact.h"
 #include "bake/map_file.h"
-#include "bake/nearest.h"
+#include "base/errors.h"
+#include "base/nearest.h"
 
 namespace ukemi {
 namespace {
-
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
 
 std::vector<std::string> values_of(double value) { return {fmt::format("{}", value)}; }
 std::vector<std::string> values_of(const std::string& value) {
@@ -88,7 +85,7 @@ SettingOf<Target> choice(std::string_view name, std::vector<std::pair<std::strin
       access(target) = value;
       return Done{};
     }
-    return usage(fmt::format("unknown word '{}'", given), suggestion(given, known));
+    return usage_error(fmt::format("unknown word '{}'", given), suggestion(given, known));
   };
   setting.get = [access, words](const Target& target) -> std::vector<std::string> {
     for (const auto& [word, value] : words)
@@ -125,7 +122,7 @@ Status check_scene_word(const std::string& text) {
 
 Status add_to_map(HumanoidOptions& target, const std::string& segment, const std::string& node) {
   if (target.map.emplace(segment, node).second) return Done{};
-  return usage(fmt::format("'{}' gets two nodes", segment), "give each segment one node");
+  return usage_error(fmt::format("'{}' gets two nodes", segment), "give each segment one node");
 }
 
 bool names_map_file(std::string_view text) {
@@ -142,8 +139,8 @@ Status take_map(HumanoidOptions& target, const std::string& text) {
   }
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals + 1 == text.size())
-    return usage(fmt::format("'{}' is not SEGMENT=NODE, and no .toml or .json file", text),
-                 "write head=NodeName or head=#12");
+    return usage_error(fmt::format("'{}' is not SEGMENT=NODE, and no .toml or .json file", text),
+                       "write head=NodeName or head=#12");
   const std::string segment = text.substr(0, equals);
   if (const Status known = check_segment(segment); !known) return known.error();
   return add_to_map(target, segment, text.substr(equals + 1));
@@ -179,7 +176,8 @@ HumanoidSetting unit_setting() {
         std::find_if(kUnits.begin(), kUnits.end(), [&](const auto& entry) { return text == entry.first; });
     const auto metres = unit == kUnits.end() ? number_in(text) : std::optional(unit->second);
     if (!metres || !Range{0.0, 1e6, true}.contains(*metres))
-      return usage(fmt::format("'{}' is no unit", text), "give m, dm, cm, mm, in, ft, or metres per unit");
+      return usage_error(fmt::format("'{}' is no unit", text),
+                         "give m, dm, cm, mm, in, ft, or metres per unit");
     target.metres_per_unit = *metres;
     return Done{};
   };
@@ -324,7 +322,7 @@ Setting rate_setting() {
   setting.set = [](BakeSettings& settings, const std::string& text) -> Status {
     const std::string prefix = "fixed:";
     if (text != "adaptive" && !text.starts_with(prefix))
-      return usage(fmt::format("unknown word '{}'", text), "give adaptive or fixed:HZ");
+      return usage_error(fmt::format("unknown word '{}'", text), "give adaptive or fixed:HZ");
     const auto hz = text == "adaptive" ? Result<double>(0.0)
                                        : parse_number(text.substr(prefix.size()), Range{60.0, 10000.0});
     if (!hz) return hz.error();
@@ -490,7 +488,7 @@ Result<const Setting*> find_setting(std::string_view name) {
     if (setting.name == name) return &setting;
     names.emplace_back(setting.name);
   }
-  return usage(fmt::format("unknown setting '{}'", name), suggestion(name, names));
+  return usage_error(fmt::format("unknown setting '{}'", name), suggestion(name, names));
 }
 
 Status check_values(const BakeSettings& settings) {

@@ -9,6 +9,7 @@
 
 #include "bake/frames.h"
 #include "bake/impact.h"
+#include "base/errors.h"
 #include "base/numbers.h"
 #include "humanoid/rotations.h"
 #include "load/load.h"
@@ -309,10 +310,6 @@ Result<std::vector<OutputFile>> pictures_of(const std::vector<Shot>& shots, Pict
   return std::vector<OutputFile>{{output, std::move(*png)}};
 }
 
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
-
 }  // namespace
 
 Result<PictureKind> picture_kind(const std::filesystem::path& output) {
@@ -322,13 +319,8 @@ Result<PictureKind> picture_kind(const std::filesystem::path& output) {
   const bool numbered = output.filename().string().find('#') != std::string::npos;
   if (extension == ".webp" && !numbered) return PictureKind::moving;
   if (extension == ".png") return numbered ? PictureKind::sequence : PictureKind::sheet;
-  return Error{ErrorKind::usage,
-               output.string(),
-               0,
-               0,
-               "",
-               "unknown picture format",
-               "let the name end in .png (a sheet), _####.png (a picture per frame) or .webp (moving)"};
+  return usage_error(output, "unknown picture format",
+                     "let the name end in .png (a sheet), _####.png (a picture per frame) or .webp (moving)");
 }
 
 Result<Rendered> render_files(const std::vector<std::string>& files, const std::filesystem::path& output,
@@ -336,7 +328,7 @@ Result<Rendered> render_files(const std::vector<std::string>& files, const std::
   const auto kind = picture_kind(output);
   if (!kind) return kind.error();
   if (files.size() > 1 && *kind != PictureKind::sheet)
-    return usage("a moving picture shows one clip", "name one file, or ask for a sheet: -o NAME.png");
+    return usage_error("a moving picture shows one clip", "name one file, or ask for a sheet: -o NAME.png");
   std::optional<RangeOfMotion> range;
   if (settings.overlays.ranges) {
     auto region = load_range_of_motion(settings.region);
@@ -377,8 +369,8 @@ Result<std::array<int, 2>> parse_picture_size(std::string_view text) {
         *width == std::floor(*width) && *height == std::floor(*height))
       return std::array<int, 2>{static_cast<int>(*width), static_cast<int>(*height)};
   }
-  return usage(fmt::format("'{}' is not a size", text),
-               "give thumbnail, screen, a4, a3 or WIDTHxHEIGHT in pixels: 1280x720");
+  return usage_error(fmt::format("'{}' is not a size", text),
+                     "give thumbnail, screen, a4, a3 or WIDTHxHEIGHT in pixels: 1280x720");
 }
 
 }  // namespace ukemi

@@ -9,7 +9,8 @@
 
 #include "bake/bake.h"
 #include "bake/motion.h"
-#include "bake/nearest.h"
+#include "base/errors.h"
+#include "base/nearest.h"
 
 namespace ukemi {
 namespace {
@@ -21,10 +22,6 @@ constexpr double kFloorRate = 30.0;            // samples per second of a clip
 constexpr int kMaxFloorSamples = 600;
 constexpr double kFloorQuantile = 0.05;  // a calibration pose or a slipped frame may lie deeper
 
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
-
 Result<Pose> still_pose(const Character& character, const Humanoid& humanoid, const std::string& text,
                         Diagnostics& diagnostics) {
   const std::pair<std::string_view, StartPose> poses[] = {
@@ -32,8 +29,8 @@ Result<Pose> still_pose(const Character& character, const Humanoid& humanoid, co
   for (const auto& [word, pose] : poses)
     if (word == text) return start_pose(character, humanoid, pose);
   if (names_motion_file(text)) return pose_of_file(character, humanoid, text, diagnostics);
-  return usage(fmt::format("unknown pose '{}'", text),
-               suggestion(text, {"rest", "stand", "guard"}) + ", or name a .bvh, .glb or .fbx file");
+  return usage_error(fmt::format("unknown pose '{}'", text),
+                     suggestion(text, {"rest", "stand", "guard"}) + ", or name a .bvh, .glb or .fbx file");
 }
 
 double height_above_floor(const Character& character, const Humanoid& humanoid, const Pose& pose) {
@@ -94,7 +91,7 @@ std::vector<Pose> floor_samples(const Skeleton& skeleton, const Animation& anima
 Result<std::optional<Animation>> motion_of(const Character& character, const Humanoid& humanoid,
                                            const BakeSettings& settings, Diagnostics& diagnostics) {
   if (settings.pose && settings.clip)
-    return usage("--pose and --clip exclude each other", "give one of them");
+    return usage_error("--pose and --clip exclude each other", "give one of them");
   std::size_t own = 0;
   if (settings.clip) {
     const auto clip = find_clip(character, *settings.clip);
@@ -107,7 +104,7 @@ Result<std::optional<Animation>> motion_of(const Character& character, const Hum
     own = *clip;
   } else if (settings.pose || !is_motion_only(character)) {
     if (settings.at_s)
-      return usage("--at needs a clip to take the time from", "add --clip NAME, or leave --at away");
+      return usage_error("--at needs a clip to take the time from", "add --clip NAME, or leave --at away");
     return std::optional<Animation>();
   }
   std::optional<Animation> motion = character.animations[own];
@@ -118,8 +115,8 @@ Result<std::optional<Animation>> motion_of(const Character& character, const Hum
 Result<Start> start_from_motion(const Character& character, const Humanoid& humanoid, Animation motion,
                                 double at_s, Diagnostics& diagnostics) {
   if (!(at_s >= 0.0) || at_s > motion.duration_s() + 1e-6)
-    return usage(fmt::format("--at {} lies outside the clip '{}'", at_s, motion.name),
-                 fmt::format("give a time from 0 to {:.3f} s", motion.duration_s()));
+    return usage_error(fmt::format("--at {} lies outside the clip '{}'", at_s, motion.name),
+                       fmt::format("give a time from 0 to {:.3f} s", motion.duration_s()));
   Start start;
   start.name = motion.name;
   start.from_clip = true;
@@ -159,7 +156,7 @@ Result<std::size_t> find_clip(const Character& character, std::string_view name)
     if (error == std::errc() && parsed == end && number < names.size()) return number;
   }
   const std::string what = fmt::format("{} has no clip '{}'", character.path.string(), name);
-  return usage(what, names.empty() ? "the file holds no clips; use --pose" : suggestion(name, names));
+  return usage_error(what, names.empty() ? "the file holds no clips; use --pose" : suggestion(name, names));
 }
 
 double floor_of(const Character& character, const Humanoid& humanoid, const std::vector<Pose>& poses) {

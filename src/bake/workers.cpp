@@ -21,6 +21,8 @@
 #include <optional>
 #include <string_view>
 
+#include "base/descriptors.h"
+
 namespace ukemi {
 namespace {
 
@@ -63,16 +65,6 @@ std::optional<Pipe> make_pipe() {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
   return Pipe{Descriptor(ends[0]), Descriptor(ends[1])};
-}
-
-bool write_all(int fd, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t n = ::write(fd, text.data(), text.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(n));
-  }
-  return true;
 }
 
 /// Appends what can be read at once; false at the end of the stream.

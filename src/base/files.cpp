@@ -10,22 +10,16 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/descriptors.h"
+#include "base/errors.h"
+
 namespace ukemi {
 namespace fs = std::filesystem;
 namespace {
 
-Error input_error(const fs::path& path, std::string what, std::string fix) {
-  return {ErrorKind::input, path.string(), 0, 0, "", std::move(what), std::move(fix)};
-}
-
-Error output_error(const fs::path& path, const std::string& what) {
-  return {ErrorKind::output,
-          path.string(),
-          0,
-          0,
-          "",
-          "cannot write: " + what,
-          "choose a folder that exists, has space and that you may write to"};
+Error cannot_write(const fs::path& path, const std::string& what) {
+  return output_error(path, "cannot write: " + what,
+                      "choose a folder that exists, has space and that you may write to");
 }
 
 std::span<const std::uint8_t> bytes_of(std::string_view text) {
@@ -49,16 +43,6 @@ fs::path with_new_name(const fs::path& folder, const Make& make) {
 bool link_as(int fd, const char* path) {
   const std::string self = "/proc/self/fd/" + std::to_string(fd);
   return linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path, AT_SYMLINK_FOLLOW) == 0;
-}
-
-bool write_all(int fd, std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t n = ::write(fd, bytes.data(), bytes.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    bytes = bytes.subspan(static_cast<std::size_t>(n));
-  }
-  return true;
 }
 
 /// A link stays a link: what it leads to is written.
@@ -113,18 +97,18 @@ Status PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> byt
   struct stat info {};
   const bool exists = stat(target.c_str(), &info) == 0;
   if (exists && !S_ISREG(info.st_mode))
-    return output_error(path, S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file");
+    return cannot_write(path, S_ISDIR(info.st_mode) ? "is a directory" : "is not a regular file");
   Pending file{path, target, {}, open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666)};
   if (file.descriptor < 0)  // a file system without nameless files
     file.temporary = with_new_name(folder, [&](const char* name) {
       file.descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       return file.descriptor >= 0;
     });
-  if (file.descriptor < 0) return output_error(path, std::strerror(errno));
+  if (file.descriptor < 0) return cannot_write(path, std::strerror(errno));
   files_.push_back(file);
   const bool written =
       write_all(file.descriptor, bytes) && (!exists || fchmod(file.descriptor, info.st_mode & 0777) == 0);
-  if (!written) return output_error(path, std::strerror(errno));
+  if (!written) return cannot_write(path, std::strerror(errno));
   return Done{};
 }
 
@@ -144,7 +128,7 @@ bool PendingFiles::place(Pending& file) {
 Status PendingFiles::commit() {
   while (!files_.empty()) {
     Pending& file = files_.front();
-    if (!place(file)) return output_error(file.path, std::strerror(errno));
+    if (!place(file)) return cannot_write(file.path, std::strerror(errno));
     close(file.descriptor);
     files_.erase(files_.begin());
   }
@@ -183,13 +167,8 @@ Result<fs::path> find_asset(const fs::path& relative) {
   folders.emplace_back(UKEMI_SOURCE_ASSETS);
   for (const fs::path& folder : folders)
     if (fs::exists(folder / relative, error)) return folder / relative;
-  return Error{ErrorKind::input,
-               relative.string(),
-               0,
-               0,
-               "",
-               "the program's own file is missing",
-               "set UKEMI_ASSETS to the project's assets folder, or install again"};
+  return input_error(relative, "the program's own file is missing",
+                     "set UKEMI_ASSETS to the project's assets folder, or install again");
 }
 
 }  // namespace ukemi

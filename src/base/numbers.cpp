@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/errors.h"
+
 namespace ukemi {
 
 std::string Range::text() const {
@@ -22,9 +24,8 @@ std::optional<double> number_in(std::string_view text) {
 Result<double> parse_number(std::string_view text, const Range& range) {
   const auto value = number_in(text);
   const std::string fix = "give a number, " + range.text();
-  if (!value) return Error{ErrorKind::usage, "", 0, 0, "", fmt::format("'{}' is not a number", text), fix};
-  if (!range.contains(*value))
-    return Error{ErrorKind::usage, "", 0, 0, "", fmt::format("{} is out of range", text), fix};
+  if (!value) return usage_error(fmt::format("'{}' is not a number", text), fix);
+  if (!range.contains(*value)) return usage_error(fmt::format("{} is out of range", text), fix);
   return *value;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/errors.h"
 #include "body/anthropometry.h"
 #include "body/shapes.h"
 
@@ -90,8 +91,7 @@ BodySegment weigh(Segment segment, const Vec3& end, double height_m, double mass
 Result<ArticulatedBody> build_body(const Character& character, const Humanoid& humanoid, const Pose& pose,
                                    const BodyPose& segments, const BodyOptions& options, Diagnostics&) {
   if (!(humanoid.height_m > 0.0) || !std::isfinite(humanoid.height_m))
-    return Error{ErrorKind::input, character.path.string(), 0, 0, "", "the character has no height",
-                 "give --height"};
+    return input_error(character.path, "the character has no height", "give --height");
   ArticulatedBody body;
   body.height_m = humanoid.height_m;
   body.mass_kg = options.mass_kg > 0.0 ? options.mass_kg : default_mass_kg(humanoid.height_m, options.sex);
@@ -100,13 +100,9 @@ Result<ArticulatedBody> build_body(const Character& character, const Humanoid& h
   for (int s = 0; s < kSegmentCount; ++s) {
     const Segment segment = segment_at(s);
     if (!segments[s].translation.allFinite() || !ends[s].allFinite())
-      return Error{ErrorKind::input,
-                   character.path.string(),
-                   0,
-                   0,
-                   std::string(name(segment)),
-                   "the segment's place is not finite",
-                   "check the file's node transforms"};
+      return error_about(std::string(name(segment)),
+                         input_error(character.path, "the segment's place is not finite",
+                                     "check the file's node transforms"));
     body.segments[s] = weigh(segment, ends[s], body.height_m, body.mass_kg, options.sex);
     if (!humanoid.segments[s].fused())
       body.segments[s].shapes = fit_shapes(segment, ends[s], body.height_m, skin[s]);

@@ -4,6 +4,7 @@
 
 #include "bake/bake.h"
 #include "bake/report.h"
+#include "base/errors.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/picture_options.h"
@@ -18,10 +19,6 @@ struct BakeRequest {
   bool json = false;
   bool quiet = false;
 };
-
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
 
 void declare_out(Options& options, BakeRequest& request) {
   BakeSettings& settings = request.settings;
@@ -41,11 +38,11 @@ void declare_out(Options& options, BakeRequest& request) {
 Status check(const BakeRequest& request) {
   const BakeSettings& settings = request.settings;
   if (request.json && request.quiet)
-    return usage("--json and --quiet exclude each other", "give one of them");
+    return usage_error("--json and --quiet exclude each other", "give one of them");
   if (settings.outputs.empty() && settings.sheet.empty() && settings.preview.empty() &&
       settings.report.empty() && !request.json)
-    return usage("nothing to write",
-                 "add -o hit.glb (or .gltf, .bvh), --sheet, --preview, --report or --json");
+    return usage_error("nothing to write",
+                       "add -o hit.glb (or .gltf, .bvh), --sheet, --preview, --report or --json");
   return Done{};
 }
 
@@ -79,9 +76,7 @@ int bake_command(const Arguments& arguments) {
                    "a .glb .gltf .vrm .fbx .dae .bvh file, or the word mannequin");
   declare_bake_options(options, request.settings);
   declare_out(options, request);
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const auto status = status_at_once(options, arguments)) return *status;
   if (const Status status = check(request); !status) return print_error(status.error());
 
   Diagnostics diagnostics;

@@ -11,6 +11,7 @@
 #include "bake/batch.h"
 #include "bake/manifest.h"
 #include "bake/review.h"
+#include "base/errors.h"
 #include "base/files.h"
 #include "cli/batch_progress.h"
 #include "cli/commands.h"
@@ -36,24 +37,11 @@ struct BatchRequest {
   bool quiet = false;
 };
 
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
-
 std::optional<int> whole_number(std::string_view text) {
   int value = 0;
   const char* end = text.data() + text.size();
   const auto [parsed, error] = std::from_chars(text.data(), end, value);
   return error == std::errc() && parsed == end ? std::optional(value) : std::nullopt;
-}
-
-Status take_workers(const std::string& text, int& workers) {
-  const auto value = whole_number(text);
-  if (!value || *value < 1 || *value > kMostWorkers)
-    return usage(fmt::format("'{}' is not a whole number from 1 to {}", text, kMostWorkers),
-                 fmt::format("give a whole number from 1 to {}", kMostWorkers));
-  workers = *value;
-  return Done{};
 }
 
 Status take_shard(const std::string& text, Shard& shard) {
@@ -62,7 +50,8 @@ Status take_shard(const std::string& text, Shard& shard) {
   const int count =
       slash == text.npos ? 0 : whole_number(std::string_view(text).substr(slash + 1)).value_or(0);
   if (index < 1 || index > count || count > kMostShards)
-    return usage(fmt::format("'{}' is not I/N", text), "give the part and the number of parts: 1/4 to 4/4");
+    return usage_error(fmt::format("'{}' is not I/N", text),
+                       "give the part and the number of parts: 1/4 to 4/4");
   shard = {index, count};
   return Done{};
 }
@@ -93,11 +82,8 @@ void declare(Options& options, BatchRequest& request) {
   options.flag("--reject-unsettled", settings.reject_unsettled,
                "reject reactions that do not come to rest; status 1");
   options.group("workers");
-  options.custom(
-      "-j,--jobs", "N",
-      [&settings](const std::string& text) { return take_workers(text, settings.workers.workers); },
-      fmt::format("worker processes [default: one for each processor, here {}; 1 to {}]", processors(),
-                  kMostWorkers));
+  options.whole("-j,--jobs", "N", settings.workers.workers, 1, kMostWorkers, "worker processes",
+                fmt::format("default: one for each processor, here {}", processors()));
   options.number("--job-timeout", "S", settings.workers.job_timeout_s, Range{0.1, 86400.0},
                  "a reaction that takes longer is given up, after a second try");
   options.number("--job-memory", "MB", request.memory_mb, Range{256.0, 1048576.0},
@@ -112,22 +98,16 @@ void declare(Options& options, BatchRequest& request) {
 
 Status check(const BatchRequest& request) {
   const BatchSettings& settings = request.settings;
-  if (settings.folder.empty()) return usage("no output", "add -o FOLDER");
+  if (settings.folder.empty()) return usage_error("no output", "add -o FOLDER");
   if (request.json && request.quiet)
-    return usage("--json and --quiet exclude each other", "give one of them");
+    return usage_error("--json and --quiet exclude each other", "give one of them");
   if (settings.resume && settings.force)
-    return usage("--resume and --force exclude each other", "give one of them");
+    return usage_error("--resume and --force exclude each other", "give one of them");
   if (!settings.merge.empty() && (settings.force || !settings.shard.whole()))
-    return usage("--merge excludes --force and --shard", "give --merge alone");
+    return usage_error("--merge excludes --force and --shard", "give --merge alone");
   for (const fs::path& folder : settings.merge)
     if (std::error_code error; !fs::is_directory(folder, error))
-      return Error{ErrorKind::input,
-                   folder.string(),
-                   0,
-                   0,
-                   "",
-                   "there is no such folder",
-                   "name a folder that a batch has written"};
+      return input_error(folder, "there is no such folder", "name a folder that a batch has written");
   return Done{};
 }
 
@@ -223,11 +203,12 @@ int report_stop(const BatchRequest& request, const BatchResult& result) {
   return 128 + g_stopped_by;
 }
 
-/// The page over what was baked; a shard has none.
+/// The page over what was baked, where it is not there yet; a shard has none.
 Status make_page(const BatchRequest& request, const BatchResult& result) {
   const bool has_any = std::any_of(result.entries.begin(), result.entries.end(),
                                    [](const auto& entry) { return entry.record && entry.record->done(); });
   if (!request.review || !request.settings.shard.whole() || !has_any) return Done{};
+  if (review_is_current(request.settings.folder)) return Done{};
   Diagnostics diagnostics;
   const auto review = write_review(request.settings.folder, {request.settings.workers.workers}, diagnostics);
   if (!request.quiet) print_warnings(diagnostics);
@@ -262,9 +243,7 @@ int batch_command(const Arguments& arguments) {
   request.settings.workers.workers = processors();
   Options options("batch", "bakes every reaction of a recipe, in as many processes as there are processors");
   declare(options, request);
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const auto status = status_at_once(options, arguments)) return *status;
   if (const Status status = check(request); !status) return print_error(status.error());
   request.settings.recipe = request.recipe;
   request.settings.workers.memory_bytes = static_cast<std::size_t>(request.memory_mb * kMegabyte);

@@ -2,6 +2,7 @@
 
 #include "bake/calibrate.h"
 #include "bake/outputs.h"
+#include "base/errors.h"
 #include "base/files.h"
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -11,7 +12,7 @@ namespace ukemi {
 namespace {
 
 Status check_output(const std::filesystem::path& output) {
-  if (output.empty()) return Error{ErrorKind::usage, "", 0, 0, "", "no output", "add -o FILE.toml"};
+  if (output.empty()) return usage_error("no output", "add -o FILE.toml");
   return check_writable(output);
 }
 
@@ -31,9 +32,7 @@ int calibrate_command(const Arguments& arguments) {
                  "threshold over the 99th percentile of standing");
   options.flag("--exclude-walking", exclude_walking, "let walking exceed the thresholds");
   options.path("-o,--output", output, "the thresholds, as .toml: bake --active-file reads them");
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const auto status = status_at_once(options, arguments)) return *status;
   if (const Status status = check_output(output); !status) return print_error(status.error());
   settings.walking = !exclude_walking;
   for (const auto& file : standing) settings.standing_files.push_back(file.string());

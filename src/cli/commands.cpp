@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "bake/bake.h"
-#include "bake/nearest.h"
+#include "base/nearest.h"
 #include "cli/console.h"
 
 namespace ukemi {

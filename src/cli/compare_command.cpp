@@ -2,7 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -10,6 +10,7 @@
 
 #include "bake/compare.h"
 #include "bake/compare_pictures.h"
+#include "base/errors.h"
 #include "base/files.h"
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -32,38 +33,13 @@ struct CompareRequest {
   bool quiet = false;
 };
 
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
-
-/// A whole number from `low` to `high`. Errors: usage.
-template <typename Number>
-Status take_whole(const std::string& text, Number low, Number high, Number& target) {
-  Number value{};
-  const char* end = text.data() + text.size();
-  const auto [parsed, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || parsed != end || value < low || value > high)
-    return usage(fmt::format("'{}' is not a whole number from {} to {}", text, low, high),
-                 fmt::format("give a whole number from {} to {}", low, high));
-  target = value;
-  return Done{};
-}
-
 void declare(Options& options, CompareRequest& request) {
   CompareSettings& settings = request.settings;
   options.argument("CHARACTER", request.character,
                    "a .glb .gltf .vrm .fbx .dae .bvh file, or the word mannequin");
   options.group("experiment");
-  options.custom(
-      "--hits", "N",
-      [&settings](const std::string& text) { return take_whole(text, 1, kMostHits, settings.hits); },
-      fmt::format("random hits for each method [default {}; 1 to {}]", settings.hits, kMostHits));
-  options.custom(
-      "--seed", "N",
-      [&settings](const std::string& text) {
-        return take_whole<std::uint64_t>(text, 0, UINT64_MAX, settings.seed);
-      },
-      fmt::format("of the hits [default {}]", settings.seed));
+  options.whole("--hits", "N", settings.hits, 1, kMostHits, "random hits for each method");
+  options.whole("--seed", "N", settings.seed, 0, UINT64_MAX, "of the hits");
   options.text("--region", "NAME|FILE", settings.region,
                "range of motion that the methods keep to: human diamond box, or a TOML file; all are judged "
                "against human");
@@ -73,10 +49,8 @@ void declare(Options& options, CompareRequest& request) {
   options.group("out");
   options.path("-o,--output", request.folder,
                "folder for compare.json, compare.txt and the pictures; made where it is missing");
-  options.custom(
-      "--show", "HIT",
-      [&request](const std::string& text) { return take_whole(text, 1, kMostHits, request.show); },
-      "which hit is drawn, 1 to N [default: the one in which (a) bends a joint farthest out]");
+  options.whole("--show", "HIT", request.show, 1, kMostHits, "which hit is drawn",
+                "default: the one in which (a) bends a joint farthest out");
   options.flag("--json", request.json, "JSON to stdout in place of the table");
   options.flag("--quiet", request.quiet, "nothing to stdout, no warnings, no progress");
 }
@@ -85,7 +59,7 @@ Status check_folder(const fs::path& folder) {
   std::error_code error;
   const fs::path holder = fs::exists(folder, error) ? folder : fs::absolute(folder, error).parent_path();
   const auto cannot = [&](std::string why, std::string fix) {
-    return Error{ErrorKind::output, folder.string(), 0, 0, "", "cannot write: " + why, std::move(fix)};
+    return output_error(folder, "cannot write: " + why, std::move(fix));
   };
   if (!fs::is_directory(holder, error))
     return holder == folder
@@ -99,12 +73,12 @@ Status check_folder(const fs::path& folder) {
 
 Status check(const CompareRequest& request) {
   if (request.json && request.quiet)
-    return usage("--json and --quiet exclude each other", "give one of them");
+    return usage_error("--json and --quiet exclude each other", "give one of them");
   if (request.quiet && request.folder.empty())
-    return usage("nothing to write", "add -o DIR, or leave --quiet away");
+    return usage_error("nothing to write", "add -o DIR, or leave --quiet away");
   if (request.show > request.settings.hits)
-    return usage(fmt::format("--show {} is beyond the last hit", request.show),
-                 fmt::format("give a number from 1 to {}, or more --hits", request.settings.hits));
+    return usage_error(fmt::format("--show {} is beyond the last hit", request.show),
+                       fmt::format("give a number from 1 to {}, or more --hits", request.settings.hits));
   return request.folder.empty() ? Status(Done{}) : check_folder(request.folder);
 }
 
@@ -152,9 +126,7 @@ Status write_folder(const fs::path& folder, const Compared& compared) {
   std::error_code error;
   fs::create_directory(folder, error);
   if (error)
-    return Error{
-        ErrorKind::output,      folder.string(), 0, 0, "", "cannot make the folder: " + error.message(),
-        "choose another folder"};
+    return output_error(folder, "cannot make the folder: " + error.message(), "choose another folder");
   for (const NamedPicture& picture : compared.pictures)
     if (const Status status = write_file(folder / picture.name, picture.png); !status) return status.error();
   if (const Status status = write_file(folder / "compare.json", comparison_json(compared.comparison));
@@ -172,9 +144,7 @@ int compare_command(const Arguments& arguments) {
                   "hits a standing body with random balls, the same with every method of joint restriction, "
                   "and measures how far the joints leave the human range");
   declare(options, request);
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const auto status = status_at_once(options, arguments)) return *status;
   if (const Status status = check(request); !status) return print_error(status.error());
 
   Diagnostics diagnostics;

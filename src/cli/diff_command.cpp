@@ -22,9 +22,7 @@ int diff_command(const Arguments& arguments) {
   options.number("--tolerance-deg", "DEG", settings.tolerance_deg, Range{0.0, 360.0}, "of rotations");
   options.number("--tolerance-mm", "MM", settings.tolerance_mm, Range{0.0, 1e6}, "of positions");
   options.flag("--json", json, "as JSON");
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const auto status = status_at_once(options, arguments)) return *status;
 
   Diagnostics diagnostics;
   const auto difference = difference_of_files(a, b, settings, diagnostics);

@@ -21,9 +21,7 @@ int inspect_command(const Arguments& arguments) {
   options.text("--region", "NAME|FILE", settings.region,
                "range of motion: human diamond box, or a TOML file");
   options.flag("--json", json, "as JSON");
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const auto status = status_at_once(options, arguments)) return *status;
 
   Diagnostics diagnostics;
   const auto inspection = inspect(file, settings, diagnostics);

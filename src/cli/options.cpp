@@ -4,18 +4,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 
-#include "bake/nearest.h"
+#include "base/errors.h"
+#include "base/nearest.h"
+#include "cli/console.h"
 
 namespace ukemi {
 namespace {
 
 constexpr std::size_t kNameColumn = 28;
 constexpr std::size_t kLineWidth = 100;
-
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
 
 /// Breaks between words so that no line is longer than `width`.
 std::string wrapped(const std::string& text, std::size_t width) {
@@ -80,6 +79,20 @@ std::string long_name(const std::string& names) {
   return comma == std::string::npos ? names : names.substr(comma + 1);
 }
 
+template <typename Target, typename Number>
+std::function<Status(const std::string&)> take_whole(Target& target, Number low, Number high) {
+  return [&target, low, high](const std::string& text) -> Status {
+    Number value{};
+    const char* end = text.data() + text.size();
+    const auto [parsed, error] = std::from_chars(text.data(), end, value);
+    if (error != std::errc() || parsed != end || value < low || value > high)
+      return usage_error(fmt::format("'{}' is not a whole number from {} to {}", text, low, high),
+                         fmt::format("give a whole number from {} to {}", low, high));
+    target = value;
+    return Done{};
+  };
+}
+
 }  // namespace
 
 struct Options::Parser {
@@ -95,7 +108,7 @@ struct Options::Parser {
     const std::string name = long_name(flags);
     CLI::callback_t callback = [this, take = std::move(take), name, list](const CLI::results_t& values) {
       if (!list && values.size() > 1 && !error)
-        error = usage(fmt::format("{} is given {} times", name, values.size()), "give it once");
+        error = usage_error(fmt::format("{} is given {} times", name, values.size()), "give it once");
       for (const std::string& text : values) {
         const Status status = take(text);
         if (status || error) continue;
@@ -120,12 +133,12 @@ struct Options::Parser {
     if (argument.size() > 1 && argument.front() == '-') {
       const std::string name = argument.substr(0, argument.find('='));
       const std::string near = nearest_word(name, names);
-      return usage(fmt::format("unknown option '{}'", name),
-                   near.empty() ? fmt::format("see ukemi {} --help", app.get_name())
-                                : fmt::format("did you mean '{}'?", near));
+      return usage_error(fmt::format("unknown option '{}'", name),
+                         near.empty() ? fmt::format("see ukemi {} --help", app.get_name())
+                                      : fmt::format("did you mean '{}'?", near));
     }
-    return usage(fmt::format("unexpected argument '{}'", argument),
-                 fmt::format("see ukemi {} --help", app.get_name()));
+    return usage_error(fmt::format("unexpected argument '{}'", argument),
+                       fmt::format("see ukemi {} --help", app.get_name()));
   }
 };
 
@@ -147,7 +160,7 @@ void Options::argument(const std::string& name, std::string& target, const std::
   parser_->arguments.push_back(name);
   CLI::callback_t take = [this, &target, name](const CLI::results_t& values) {
     target = values.front();
-    if (target.empty() && !parser_->error) parser_->error = usage(name + " is empty", "name a file");
+    if (target.empty() && !parser_->error) parser_->error = usage_error(name + " is empty", "name a file");
     return true;
   };
   parser_->app.add_option(name, std::move(take), help)->type_name("")->type_size(1)->expected(1)->required();
@@ -201,11 +214,30 @@ void Options::number(const std::string& names, const std::string& unit, double& 
                    });
 }
 
+void Options::whole(const std::string& names, const std::string& unit, int& target, int low, int high,
+                    const std::string& help, const std::string& otherwise) {
+  const std::string without = otherwise.empty() ? fmt::format("default {}", target) : otherwise;
+  parser_->declare(names, unit, with_notes(help, {without, fmt::format("{} to {}", low, high)}), false,
+                   take_whole(target, low, high));
+}
+
+void Options::whole(const std::string& names, const std::string& unit, std::optional<int>& target, int low,
+                    int high, const std::string& help, const std::string& otherwise) {
+  parser_->declare(names, unit, with_notes(help, {otherwise, fmt::format("{} to {}", low, high)}), false,
+                   take_whole(target, low, high));
+}
+
+void Options::whole(const std::string& names, const std::string& unit, std::uint64_t& target,
+                    std::uint64_t low, std::uint64_t high, const std::string& help) {
+  parser_->declare(names, unit, with_notes(help, {fmt::format("default {}", target)}), false,
+                   take_whole(target, low, high));
+}
+
 void Options::path(const std::string& names, std::filesystem::path& target, const std::string& help) {
   custom(
       names, "FILE",
       [&target](const std::string& text) -> Status {
-        if (text.empty()) return usage("the file's name is empty", "name a file");
+        if (text.empty()) return usage_error("the file's name is empty", "name a file");
         target = text;
         return Done{};
       },
@@ -217,7 +249,7 @@ void Options::paths(const std::string& names, std::vector<std::filesystem::path>
   custom(
       names, "FILE",
       [&target](const std::string& text) -> Status {
-        if (text.empty()) return usage("the file's name is empty", "name a file");
+        if (text.empty()) return usage_error("the file's name is empty", "name a file");
         target.emplace_back(text);
         return Done{};
       },
@@ -253,11 +285,11 @@ Result<Options::Outcome> Options::parse(const std::vector<std::string>& argument
     const auto extras = app.remaining();
     for (const std::string& extra : extras)
       if (extra.size() > 1 && extra.front() == '-') return parser_->unknown(extra);
-    return usage(fmt::format("{} is missing", fmt::join(parser_->arguments, " or ")), see);
+    return usage_error(fmt::format("{} is missing", fmt::join(parser_->arguments, " or ")), see);
   } catch (const CLI::ArgumentMismatch& mismatch) {
-    return usage(mismatch.what(), see);
+    return usage_error(mismatch.what(), see);
   } catch (const CLI::ParseError& error) {
-    return usage(error.what(), see);
+    return usage_error(error.what(), see);
   }
   if (parser_->error) return *parser_->error;
   for (const std::string& extra : app.remaining())
@@ -266,5 +298,13 @@ Result<Options::Outcome> Options::parse(const std::vector<std::string>& argument
 }
 
 std::string Options::help() const { return parser_->app.help(); }
+
+std::optional<int> status_at_once(Options& options, const std::vector<std::string>& arguments,
+                                  const std::string& further) {
+  const auto outcome = options.parse(arguments);
+  if (!outcome) return print_error(outcome.error());
+  if (*outcome == Options::Outcome::help) return print_result(options.help() + further, 0);
+  return std::nullopt;
+}
 
 }  // namespace ukemi

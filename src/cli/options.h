@@ -2,6 +2,7 @@
 // help.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -37,6 +38,14 @@ class Options {
             const std::string& help);
   void number(const std::string& names, const std::string& unit, double& target, const Range& range,
               const std::string& help);
+  /// A whole number from `low` to `high`; `otherwise` says what is where it is not given, unless that is the
+  /// target's value.
+  void whole(const std::string& names, const std::string& unit, int& target, int low, int high,
+             const std::string& help, const std::string& otherwise = "");
+  void whole(const std::string& names, const std::string& unit, std::optional<int>& target, int low, int high,
+             const std::string& help, const std::string& otherwise);
+  void whole(const std::string& names, const std::string& unit, std::uint64_t& target, std::uint64_t low,
+             std::uint64_t high, const std::string& help);
   void path(const std::string& names, std::filesystem::path& target, const std::string& help);
   void paths(const std::string& names, std::vector<std::filesystem::path>& target, const std::string& help);
   void flag(const std::string& names, bool& target, const std::string& help);
@@ -58,5 +67,10 @@ class Options {
   struct Parser;
   std::unique_ptr<Parser> parser_;
 };
+
+/// Takes a command's arguments. Where it ends with that, its exit status: help (and `further`) is printed, or
+/// the refusal is.
+std::optional<int> status_at_once(Options& options, const std::vector<std::string>& arguments,
+                                  const std::string& further = "");
 
 }  // namespace ukemi

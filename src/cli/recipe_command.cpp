@@ -8,9 +8,8 @@ namespace ukemi {
 int recipe_command(const Arguments& arguments) {
   Options options("recipe",
                   "prints a commented recipe with every key and every setting, ready for ukemi batch");
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  return print_result(*outcome == Options::Outcome::help ? options.help() : recipe_reference(), 0);
+  if (const auto status = status_at_once(options, arguments)) return *status;
+  return print_result(recipe_reference(), 0);
 }
 
 }  // namespace ukemi

@@ -4,6 +4,7 @@
 
 #include "bake/outputs.h"
 #include "bake/sheet.h"
+#include "base/errors.h"
 #include "base/files.h"
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -19,23 +20,6 @@ struct RenderRequest {
   std::filesystem::path output;
   RenderSettings settings;
 };
-
-Error usage(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
-
-template <typename Target>
-auto take_whole(Target& target, const Range& range) {
-  return [&target, range](const std::string& text) -> Status {
-    const auto number = parse_number(text, range);
-    if (!number) return number.error();
-    if (*number != static_cast<int>(*number))
-      return usage(fmt::format("'{}' is not a whole number", text),
-                   fmt::format("give a whole number, {}", range.text()));
-    target = static_cast<int>(*number);
-    return Done{};
-  };
-}
 
 template <typename Value, typename Parse>
 auto take_parsed(std::optional<Value>& target, Parse&& parse) {
@@ -70,10 +54,9 @@ void declare_look(Options& options, RenderSettings& settings) {
 
 void declare_kinds(Options& options, RenderSettings& settings) {
   options.group("sheet");
-  options.custom("--cells", "N", take_whole(settings.cells, Range{1, 100}),
-                 "moments shown [default 12; 6 a row for several files; 1 to 100]");
-  options.custom("--columns", "N", take_whole(settings.columns, Range{1, 100}),
-                 "cells side by side [default 4; 1 to 100]");
+  options.whole("--cells", "N", settings.cells, 1, 100, "moments shown",
+                "default 12; 6 a row for several files");
+  options.whole("--columns", "N", settings.columns, 1, 100, "cells side by side", "default 4");
   options.group("moving picture");
   options.number("--fps", "HZ", settings.fps, Range{1.0, 60.0}, "pictures a second");
   options.number("--speed", "X", settings.speed, Range{0.01, 10.0},
@@ -87,17 +70,17 @@ void declare_kinds(Options& options, RenderSettings& settings) {
 }
 
 Status check(const RenderRequest& request) {
-  if (request.files.empty()) return usage("no file", "name a file, or the word mannequin");
-  if (request.output.empty()) return usage("no output", "add -o FILE.png or -o FILE.webp");
+  if (request.files.empty()) return usage_error("no file", "name a file, or the word mannequin");
+  if (request.output.empty()) return usage_error("no output", "add -o FILE.png or -o FILE.webp");
   const auto kind = picture_kind(request.output);
   if (!kind) return kind.error();
   const RenderSettings& settings = request.settings;
   if (*kind != PictureKind::sheet && (settings.cells || settings.columns))
-    return usage("--cells and --columns are for sheets", "ask for -o NAME.png, or leave them out");
+    return usage_error("--cells and --columns are for sheets", "ask for -o NAME.png, or leave them out");
   if (*kind == PictureKind::sheet && settings.turn_s)
-    return usage("--turntable is for moving pictures", "ask for -o NAME.webp or -o NAME_####.png");
+    return usage_error("--turntable is for moving pictures", "ask for -o NAME.webp or -o NAME_####.png");
   if (settings.size && settings.columns)
-    return usage("--size and --columns exclude each other", "give one of them");
+    return usage_error("--size and --columns exclude each other", "give one of them");
   return check_writable(request.output);
 }
 
@@ -124,9 +107,7 @@ int render_command(const Arguments& arguments) {
   declare_humanoid_options(options, request.settings.humanoid);
   declare_look(options, request.settings);
   declare_kinds(options, request.settings);
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const auto status = status_at_once(options, arguments)) return *status;
   if (const Status status = check(request); !status) return print_error(status.error());
 
   Diagnostics diagnostics;

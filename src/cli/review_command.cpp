@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -34,16 +33,12 @@ void print_progress(int done, int total) {
 int review_command(const Arguments& arguments) {
   std::string folder;
   ReviewSettings settings;
-  double threads = settings.threads;
   bool quiet = false;
   Options options("review", "makes the web page to judge reactions by");
   options.argument("DIR", folder, "what ukemi batch wrote, or any folder of baked clips and their reports");
-  options.number("-j,--jobs", "N", threads, Range{1.0, 256.0}, "clips read at the same time");
+  options.whole("-j,--jobs", "N", settings.threads, 1, 256, "clips read at the same time");
   options.flag("--quiet", quiet, "nothing on stdout");
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  if (*outcome == Options::Outcome::help) return print_result(options.help() + kAboutThePage, 0);
-  settings.threads = static_cast<int>(std::floor(threads));
+  if (const auto status = status_at_once(options, arguments, kAboutThePage)) return *status;
 
   Diagnostics diagnostics;
   const bool watched = !quiet && isatty(STDERR_FILENO) == 1;

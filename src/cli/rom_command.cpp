@@ -6,6 +6,7 @@
 
 #include "bake/outputs.h"
 #include "bake/rom.h"
+#include "base/errors.h"
 #include "base/files.h"
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -20,13 +21,8 @@ constexpr Range kSwingRange{-170.0, 170.0};
 Status take_state(RomSettings& settings, const std::string& text) {
   const auto comma = text.find(',');
   if (comma == std::string::npos)
-    return Error{ErrorKind::usage,
-                 "",
-                 0,
-                 0,
-                 "",
-                 fmt::format("'{}' is not AY,AZ", text),
-                 "give two angles in degrees, as in --state=20,-35"};
+    return usage_error(fmt::format("'{}' is not AY,AZ", text),
+                       "give two angles in degrees, as in --state=20,-35");
   const auto a_y = parse_number(text.substr(0, comma), kSwingRange);
   if (!a_y) return a_y.error();
   const auto a_z = parse_number(text.substr(comma + 1), kSwingRange);
@@ -77,8 +73,7 @@ void declare(Options& options, RomRequest& request) {
 
 Status check(const RomRequest& request) {
   if (request.max_excess_deg && !request.settings.check)
-    return Error{
-        ErrorKind::usage, "", 0, 0, "", "--max-excess needs --check", "name a clip or a file to check"};
+    return usage_error("--max-excess needs --check", "name a clip or a file to check");
   if (request.output.empty()) return Done{};
   if (const Status status = check_picture_name(request.output); !status) return status.error();
   return check_writable(request.output);
@@ -99,9 +94,7 @@ int rom_command(const Arguments& arguments) {
   RomRequest request;
   Options options("rom", "draws or prints the range of motion of the joints, and clips in it");
   declare(options, request);
-  const auto outcome = options.parse(arguments);
-  if (!outcome) return print_error(outcome.error());
-  if (*outcome == Options::Outcome::help) return print_result(options.help(), 0);
+  if (const auto status = status_at_once(options, arguments)) return *status;
   if (const Status status = check(request); !status) return print_error(status.error());
 
   Diagnostics diagnostics;

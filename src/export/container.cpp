@@ -1,6 +1,8 @@
 #include "export/container.h"
 
+#include "base/errors.h"
 #include "base/files.h"
+#include "base/uri.h"
 
 #include <algorithm>
 #include <charconv>
@@ -25,23 +27,6 @@ void put_chunk(std::vector<std::uint8_t>& out, std::uint32_t type, std::span<con
   out.resize(padded(out.size()), padding);
 }
 
-std::string percent_decoded(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned code = 0;
-    if (text[i] == '%' && i + 2 < text.size()) {
-      const char* first = text.data() + i + 1;
-      if (std::from_chars(first, first + 2, code, 16).ptr == first + 2) {
-        result += static_cast<char>(code);
-        i += 2;
-        continue;
-      }
-    }
-    result += text[i];
-  }
-  return result;
-}
-
 }  // namespace
 
 Result<std::vector<std::uint8_t>> assemble_glb(std::string json, std::span<const std::uint8_t> bin,
@@ -51,8 +36,7 @@ Result<std::vector<std::uint8_t>> assemble_glb(std::string json, std::span<const
   const std::size_t bin_size = bin.empty() ? 0 : 8 + padded(bin.size());
   const std::size_t size = 12 + 8 + padded(json.size()) + bin_size + further.size();
   if (size > std::numeric_limits<std::uint32_t>::max())
-    return Error{ErrorKind::input,       "", 0, 0, "", "a .glb cannot be larger than 4 GiB",
-                 "write a .gltf instead"};
+    return input_error({}, "a .glb cannot be larger than 4 GiB", "write a .gltf instead");
   std::vector<std::uint8_t> out{'g', 'l', 'T', 'F', 2, 0, 0, 0};
   out.reserve(size);
   put_u32(out, size);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/errors.h"
 #include "export/euler.h"
 #include "export/export.h"
 
@@ -296,7 +297,7 @@ Status check(const Character& character, const Humanoid& humanoid, const Clip& c
   const std::size_t nodes = character.skeleton.nodes.size();
   const auto fits = [&](const Pose& pose) { return pose.size() == nodes; };
   const auto error = [&](const char* what, const char* fix) {
-    return Error{ErrorKind::input, character.path.string(), 0, 0, "", what, fix};
+    return input_error(character.path, what, fix);
   };
   if (clip.frames.empty() || !(clip.fps > 0.0)) return error("the clip is empty", "bake at least one frame");
   if (!std::all_of(clip.frames.begin(), clip.frames.end(), fits))

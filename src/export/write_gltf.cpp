@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/errors.h"
 #include "base/files.h"
 #include "export/container.h"
 #include "export/export.h"
@@ -33,7 +34,7 @@ struct Edit {
 };
 
 Error document_error(const Character& character, std::string what, std::string fix) {
-  return {ErrorKind::input, character.path.string(), 0, 0, "", std::move(what), std::move(fix)};
+  return input_error(character.path, std::move(what), std::move(fix));
 }
 
 Json& array_of(Json& object, const char* key) {

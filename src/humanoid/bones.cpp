@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/errors.h"
+#include "base/nearest.h"
 #include "humanoid/names.h"
 
 namespace ukemi {
@@ -226,49 +228,25 @@ void apply_vrm(const Character& character, Bones& bones) {
   }
 }
 
-/// Edit distance, for "did you mean".
-int distance(std::string_view a, std::string_view b) {
-  std::vector<int> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    int diagonal = std::exchange(row[0], static_cast<int>(i));
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const int change = diagonal + (a[i - 1] != b[j - 1] ? 1 : 0);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, change}));
-    }
-  }
-  return row.back();
-}
-
-std::string nearest(std::string_view wanted, const std::vector<std::string>& known) {
-  const auto best = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-    return distance(wanted, a) < distance(wanted, b);
-  });
-  return best == known.end() ? std::string() : *best;
-}
-
 Status apply_user_map(const Character& character, const HumanoidOptions& options, Bones& bones) {
   for (const auto& [segment_name, label] : options.map) {
     const auto segment = segment_named(segment_name);
-    Error error = input_error(character, {}, {});
-    error.kind = ErrorKind::usage;
     if (!segment) {
       std::vector<std::string> known;
       for (int i = 0; i < kSegmentCount; ++i) known.emplace_back(name(segment_at(i)));
-      error.what = fmt::format("there is no segment '{}'", segment_name);
-      error.fix = fmt::format("did you mean '{}'? Segments are {}", nearest(segment_name, known),
-                              fmt::join(known, ", "));
-      return error;
+      return usage_error(character.path, fmt::format("there is no segment '{}'", segment_name),
+                         suggestion(segment_name, known));
     }
     const int node = character.skeleton.find(label);
     if (node < 0) {
       std::vector<std::string> known;
       for (int i = 0; i < character.skeleton.size(); ++i) known.push_back(character.skeleton.label(i));
-      error.joint = segment_name;
-      error.what = fmt::format("there is no node '{}', or more than one", label);
-      error.fix =
-          known.empty() ? "the file has no nodes" : fmt::format("did you mean '{}'?", nearest(label, known));
-      return error;
+      const std::string near = nearest_word(label, known);
+      return error_about(
+          segment_name,
+          usage_error(character.path, fmt::format("there is no node '{}', or more than one", label),
+                      near.empty() ? "give a node's unique name, or its #INDEX in the file"
+                                   : fmt::format("did you mean '{}'?", near)));
     }
     bones.set(*segment, node, "user");
   }
@@ -322,7 +300,7 @@ Error not_a_humanoid(const Character& character, const Bones& bones, bool any_sk
       any_skin ? fmt::format("{} nodes, {} of them skin joints", character.skeleton.size(), joints)
                : fmt::format("{} nodes and no skin", character.skeleton.size());
   return input_error(
-      character,
+      character.path,
       fmt::format(
           "not a humanoid: looked for a pelvis, a head, two arms (upper arm, forearm) and two legs (thigh, "
           "shank) by VRM data, names and shape in {}; found {}; missing {}",
@@ -332,15 +310,6 @@ Error not_a_humanoid(const Character& character, const Bones& bones, bool any_sk
 }
 
 }  // namespace
-
-Error input_error(const Character& character, std::string what, std::string fix) {
-  Error error;
-  error.kind = ErrorKind::input;
-  error.file = character.path.string();
-  error.what = std::move(what);
-  error.fix = std::move(fix);
-  return error;
-}
 
 int common_ancestor(const Skeleton& skeleton, int a, int b) {
   if (a < 0 || b < 0) return -1;

@@ -43,9 +43,6 @@ std::optional<Bones> find_bones_by_shape(const Character& character, const Human
 /// Empty (all -1) when there is none.
 Bones find_by_topology(const Character& character, const Pose& pose);
 
-/// An Error of kind input about the character's file.
-Error input_error(const Character& character, std::string what, std::string fix);
-
 /// Lowest common ancestor (a node is its own ancestor); -1 when there is none.
 int common_ancestor(const Skeleton& skeleton, int a, int b);
 inline bool is_at_or_below(const Skeleton& skeleton, int top, int node) {

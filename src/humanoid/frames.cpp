@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.h"
 #include "humanoid/assemble.h"
 #include "humanoid/bones.h"
 #include "humanoid/figure.h"
@@ -263,7 +264,7 @@ Status find_frames(const Character& character, const HumanoidOptions& options, H
   Reference reference = find_reference(character, humanoid);
   if (!humanlike(Figure(character, humanoid, reference.pose)))
     return input_error(
-        character,
+        character.path,
         "not a humanoid: bones were found by name, but no pose of the file has a trunk that rises from "
         "two legs with an arm on each side",
         "if the character is a human, check the bones with --map SEGMENT=NODE");

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/errors.h"
 #include "load/assimp_scene.h"
 #include "load/child.h"
 #include "load/gltf_reader.h"
@@ -25,11 +26,11 @@ Result<SceneDocument> import(std::span<const std::uint8_t> bytes, const std::fil
   try {
     return load::document_from_scene(bytes, path, diagnostics);
   } catch (const load::Refusal& refusal) {
-    return load::input_error(path, 0, refusal.message, refusal.fix);
+    return input_error(path, refusal.message, refusal.fix);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& exception) {
-    return load::input_error(path, 0, fmt::format("cannot be read: {}", exception.what()), kExportAgain);
+    return input_error(path, fmt::format("cannot be read: {}", exception.what()), kExportAgain);
   }
 }
 
@@ -68,7 +69,7 @@ Result<SceneDocument> unpacked(const Bytes& bytes, const std::filesystem::path& 
   for (const Json& warning : head.at("warnings"))
     diagnostics.warn(warning.at(0).get<std::string>(), warning.at(1).get<std::string>());
   if (head.contains("what"))
-    return load::input_error(path, 0, head.at("what").get<std::string>(), head.at("fix").get<std::string>());
+    return input_error(path, head.at("what").get<std::string>(), head.at("fix").get<std::string>());
   SceneDocument scene;
   const std::span body(bytes.data() + (line_end - bytes.begin()) + 1,
                        static_cast<std::size_t>(bytes.end() - line_end) - 1);
@@ -76,7 +77,7 @@ Result<SceneDocument> unpacked(const Bytes& bytes, const std::filesystem::path& 
   scene.container.has_binary = head.contains("binary_bytes");
   const std::size_t binary_bytes = head.value("binary_bytes", std::size_t{0});
   if (json_bytes > body.size() || binary_bytes != body.size() - json_bytes)
-    return load::input_error(path, 0, "makes its reader send a broken answer", kExportAgain);
+    return input_error(path, "makes its reader send a broken answer", kExportAgain);
   scene.container.document.json.assign(body.begin(), body.begin() + static_cast<std::ptrdiff_t>(json_bytes));
   scene.container.binary.assign(body.begin() + static_cast<std::ptrdiff_t>(json_bytes), body.end());
   if (head.contains("metres_per_unit")) scene.metres_per_unit = head.at("metres_per_unit").get<double>();
@@ -99,7 +100,7 @@ Result<SceneDocument> import_in_child(std::span<const std::uint8_t> bytes, const
   try {
     return unpacked(*answer, path, diagnostics);
   } catch (const Json::exception&) {
-    return load::input_error(path, 0, "makes its reader send a broken answer", kExportAgain);
+    return input_error(path, "makes its reader send a broken answer", kExportAgain);
   }
 }
 

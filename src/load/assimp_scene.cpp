@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "base/errors.h"
 #include "base/files.h"
 #include "load/gltf_reader.h"
 #include "load/load.h"
@@ -568,12 +569,12 @@ namespace load {
 Result<SceneDocument> document_from_scene(std::span<const std::uint8_t> bytes,
                                           const std::filesystem::path& path, Diagnostics& diagnostics) {
   const std::string extension = path.extension().string();
-  if (extension.size() < 2) return input_error(path, 0, "has no extension", kKnownExtensions);
+  if (extension.size() < 2) return input_error(path, "has no extension", kKnownExtensions);
   const std::string hint = extension.substr(1);
   Assimp::Importer importer;
   const Assimp::BaseImporter* reader = importer.GetImporter(hint.c_str());
   if (reader == nullptr)
-    return input_error(path, 0, fmt::format("extension {} is not known", load::quoted(extension)),
+    return input_error(path, fmt::format("extension {} is not known", load::quoted(extension)),
                        kKnownExtensions);
   keep_only(importer, reader);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
@@ -582,7 +583,7 @@ Result<SceneDocument> document_from_scene(std::span<const std::uint8_t> bytes,
   const aiScene* scene =
       importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, hint.c_str());
   if (scene == nullptr || scene->mRootNode == nullptr)
-    return input_error(path, 0, fmt::format("cannot be read: {}", importer.GetErrorString()),
+    return input_error(path, fmt::format("cannot be read: {}", importer.GetErrorString()),
                        "export the file again, or export it as .glb");
   return SceneConverter(*scene, path, diagnostics).convert();
 }

@@ -7,11 +7,18 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/errors.h"
 #include "load/load.h"
 #include "load/text.h"
 
 namespace ukemi {
 namespace {
+
+Error error_in_line(const std::filesystem::path& path, int line, std::string what, std::string fix) {
+  Error error = input_error(path, std::move(what), std::move(fix));
+  error.line = line;
+  return error;
+}
 
 using load::quoted;
 using load::same_word;
@@ -115,7 +122,7 @@ class BvhReader {
   };
 
   Error error(int line, std::string what, std::string fix) const {
-    return load::input_error(path_, line, std::move(what), std::move(fix));
+    return error_in_line(path_, line, std::move(what), std::move(fix));
   }
   Error joint_error(int joint, std::string what, std::string fix) const {
     Error e = error(scanner_.line(), std::move(what), std::move(fix));
@@ -439,7 +446,7 @@ Result<Character> read_bvh(std::string_view text, const std::filesystem::path& p
                            Diagnostics& diagnostics) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-    return load::input_error(path, 1, "is UTF-16 text", "save it as UTF-8 or plain ASCII");
+    return error_in_line(path, 1, "is UTF-16 text", "save it as UTF-8 or plain ASCII");
   std::string with_newlines;
   if (text.find('\n') == text.npos && text.find('\r') != text.npos) {
     with_newlines = text;

@@ -18,6 +18,8 @@
 #include <new>
 #include <optional>
 
+#include "base/descriptors.h"
+#include "base/errors.h"
 #include "load/text.h"
 
 namespace ukemi::load {
@@ -71,17 +73,6 @@ void confine(const ChildLimits& limits) {
   if (nowhere >= 0) dup2(nowhere, STDOUT_FILENO), dup2(nowhere, STDERR_FILENO);
 }
 
-bool write_all(int fd, const std::vector<std::uint8_t>& bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t n = write(fd, bytes.data() + done, bytes.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    done += static_cast<std::size_t>(n);
-  }
-  return true;
-}
-
 [[noreturn]] void work_in_child(const std::function<std::vector<std::uint8_t>()>& work,
                                 const ChildLimits& limits, int out) {
   int status = kFailed;
@@ -119,7 +110,7 @@ Reading read_all(int in, const ChildLimits& limits, std::vector<std::uint8_t>& b
 }
 
 Error too_long(const std::filesystem::path& path, const char* clock, double seconds) {
-  return input_error(path, 0,
+  return input_error(path,
                      fmt::format("takes more than {} s of {} time to read; it was given up", seconds, clock),
                      kSimplify);
 }
@@ -129,18 +120,16 @@ std::optional<Error> failure(int status, const ChildLimits& limits, const std::f
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
     if (number == SIGKILL)
-      return input_error(path, 0, "makes its reader be killed, probably because memory ran out", kSimplify);
+      return input_error(path, "makes its reader be killed, probably because memory ran out", kSimplify);
     if (number == SIGXCPU) return too_long(path, "processor", limits.processor_s);
-    return input_error(
-        path, 0, fmt::format("makes its reader crash (signal {}, {})", number, strsignal(number)), kDamaged);
+    return input_error(path, fmt::format("makes its reader crash (signal {}, {})", number, strsignal(number)),
+                       kDamaged);
   }
   if (WEXITSTATUS(status) == kDone) return std::nullopt;
   if (WEXITSTATUS(status) == kOutOfMemory)
-    return input_error(path, 0,
-                       fmt::format("needs more than {} MiB of memory to read", limits.memory_bytes >> 20),
-                       kSimplify);
-  return input_error(path, 0, fmt::format("makes its reader end with status {}", WEXITSTATUS(status)),
-                     kDamaged);
+    return input_error(
+        path, fmt::format("needs more than {} MiB of memory to read", limits.memory_bytes >> 20), kSimplify);
+  return input_error(path, fmt::format("makes its reader end with status {}", WEXITSTATUS(status)), kDamaged);
 }
 
 Error no_process(const char* what) {
@@ -176,7 +165,7 @@ Result<std::vector<std::uint8_t>> run_in_child(const std::function<std::vector<s
   }
   if (reading == Reading::too_long) return too_long(path, "waiting", limits.wall_s);
   if (reading == Reading::too_much)
-    return input_error(path, 0, fmt::format("makes more than {} MiB of data", limits.result_bytes >> 20),
+    return input_error(path, fmt::format("makes more than {} MiB of data", limits.result_bytes >> 20),
                        kSimplify);
   if (auto error = failure(status, limits, path)) return *error;
   return bytes;

@@ -6,6 +6,7 @@
 #include <new>
 #include <set>
 
+#include "base/errors.h"
 #include "load/gltf_accessors.h"
 #include "load/gltf_container.h"
 #include "load/gltf_mesh.h"
@@ -320,11 +321,9 @@ Result<Character> with_errors(const std::filesystem::path& path, const Read& rea
   try {
     return read();
   } catch (const Refusal& refusal) {
-    Error error = load::input_error(path, refusal.line, refusal.message, refusal.fix);
-    error.column = refusal.column;
-    return error;
+    return error_at(refusal, input_error(path, refusal.message, refusal.fix));
   } catch (const std::bad_alloc&) {
-    return load::input_error(path, 0, "needs more memory than there is", "use a smaller file");
+    return input_error(path, "needs more memory than there is", "use a smaller file");
   }
 }
 

@@ -1,5 +1,6 @@
 #include "load/load.h"
 
+#include "base/errors.h"
 #include "base/files.h"
 #include "load/text.h"
 
@@ -19,7 +20,7 @@ Result<Character> load_character(const std::filesystem::path& path, const LoadOp
                                  Diagnostics& diagnostics) {
   const auto bytes = read_file(path, options.max_file_bytes);
   if (!bytes) return bytes.error();
-  if (bytes->empty()) return load::input_error(path, 0, "is empty", "use a file with content");
+  if (bytes->empty()) return input_error(path, "is empty", "use a file with content");
   const std::string extension = lower_extension(path);
   if (extension == ".bvh")
     return read_bvh({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path, diagnostics);

@@ -37,10 +37,6 @@ bool is_utf8(std::string_view bytes) {
 
 }  // namespace
 
-Error input_error(const std::filesystem::path& path, int line, std::string what, std::string fix) {
-  return {ErrorKind::input, path.string(), line, 0, "", std::move(what), std::move(fix)};
-}
-
 bool same_word(std::string_view a, std::string_view b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](char x, char y) { return lower(x) == lower(y); });

@@ -10,9 +10,6 @@
 
 namespace ukemi::load {
 
-/// An Error of kind input about a file. Line 0: no line.
-Error input_error(const std::filesystem::path& path, int line, std::string what, std::string fix);
-
 /// True when the two are the same but for ASCII case.
 bool same_word(std::string_view a, std::string_view b);
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/errors.h"
+
 namespace ukemi {
 namespace {
 
@@ -82,13 +84,8 @@ Result<Font> Font::open(FontStyle style) {
   auto face = std::make_unique<Face>();
   if (path.empty() || FT_Init_FreeType(&face->library) != 0 ||
       FT_New_Face(face->library, path.c_str(), 0, &face->face) != 0)
-    return Error{ErrorKind::output,
-                 file,
-                 0,
-                 0,
-                 "",
-                 "the font of the labels is missing in " + std::string(kFolders[0]),
-                 "install fonts-dejavu-core, or leave the picture out"};
+    return output_error(file, "the font of the labels is missing in " + std::string(kFolders[0]),
+                        "install fonts-dejavu-core, or leave the picture out");
   return Font(std::move(face));
 }
 

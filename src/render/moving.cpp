@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.h"
 #include "render/sheet_page.h"
 #include "render/studio.h"
 
@@ -15,10 +16,6 @@ constexpr double kQuality = 80.0;
 constexpr int kMostFrames = 3600;
 constexpr int kMomentsInView = 12;   // frames whose whole skin the camera holds
 constexpr double kTagTime_s = 0.25;  // a phase is named from its frame on
-
-Error usage_error(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
 
 /// Which frame of the clip each picture shows, and how far round the camera is, radians.
 struct Take {

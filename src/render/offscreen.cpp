@@ -2,6 +2,8 @@
 
 #include <dlfcn.h>
 
+#include "base/errors.h"
+
 namespace ukemi {
 
 // Never closed: Mesa leaves thread-local destructors behind that must outlive the library's users.
@@ -18,13 +20,8 @@ Result<std::unique_ptr<Offscreen>> make_offscreen(OffscreenKind kind) {
   if (kind != OffscreenKind::osmesa)
     if (auto context = make_egl(egl_reason)) return context;
   const std::string both = osmesa_reason.empty() || egl_reason.empty() ? "" : "; ";
-  return Error{ErrorKind::output,
-               "",
-               0,
-               0,
-               "",
-               "cannot draw off-screen: " + osmesa_reason + both + egl_reason,
-               "install libosmesa6 (or libegl1 with libegl-mesa0), or leave the picture out"};
+  return output_error({}, "cannot draw off-screen: " + osmesa_reason + both + egl_reason,
+                      "install libosmesa6 (or libegl1 with libegl-mesa0), or leave the picture out");
 }
 
 }  // namespace ukemi

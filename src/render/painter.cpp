@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/errors.h"
 #include "render/gl.h"
 #include "render/shaders.h"
 
@@ -462,13 +463,8 @@ Result<std::unique_ptr<Painter>> Painter::make(int width, int height, const std:
     state->set_up();
   }
   if (!state->trouble.empty() || !state->take_textures(textures))
-    return Error{ErrorKind::output,
-                 "",
-                 0,
-                 0,
-                 "",
-                 "cannot draw off-screen: " + state->trouble,
-                 "ask for smaller cells, or leave the picture out"};
+    return output_error({}, "cannot draw off-screen: " + state->trouble,
+                        "ask for smaller cells, or leave the picture out");
   return std::unique_ptr<Painter>(new Painter(std::move(state)));
 }
 

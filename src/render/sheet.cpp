@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.h"
 #include "render/sheet_page.h"
 #include "render/studio.h"
 
@@ -13,10 +14,6 @@ constexpr int kLongestPageSide = 32000;
 constexpr int kShortestCell = 64, kLongestCell = 4096;
 constexpr double kHole = 0.6;  // what empty places weigh beside an unusual aspect
 constexpr double kCellAspect = 320.0 / 360.0;
-
-Error usage_error(std::string what, std::string fix) {
-  return {ErrorKind::usage, "", 0, 0, "", std::move(what), std::move(fix)};
-}
 
 Status check(const SheetOptions& options) {
   if (options.columns < 1 || options.columns > 100 || options.cells < 1 || options.cells > 1000)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.h"
 #include "render/sheet_page.h"
 #include "render/studio.h"
 
@@ -101,9 +102,7 @@ class Strips {
 double zoom_for(int cell_width) { return std::clamp(cell_width / 280.0, 0.4, 4.0); }
 
 Error size_error(int width, int height, std::string fix) {
-  return {
-      ErrorKind::usage, "", 0, 0, "", fmt::format("a sheet of {} x {} pixels cannot be drawn", width, height),
-      std::move(fix)};
+  return usage_error(fmt::format("a sheet of {} x {} pixels cannot be drawn", width, height), std::move(fix));
 }
 
 Status check(const std::vector<Shot>& shots) {
@@ -186,13 +185,8 @@ Result<Picture> render_strips(const std::vector<Shot>& shots, const StripsOption
   const Pen pen{*fonts, theme(sheet.theme), zoom_for(sheet.cell_width)};
   const Strips places(pen, sheet, static_cast<int>(moments.size()), static_cast<int>(rows->size()));
   if (std::max(places.width(), places.height()) > kLongestPageSide)
-    return Error{ErrorKind::usage,
-                 "",
-                 0,
-                 0,
-                 "",
-                 fmt::format("a sheet of {} x {} pixels is too large", places.width(), places.height()),
-                 "ask for fewer or smaller cells"};
+    return usage_error(fmt::format("a sheet of {} x {} pixels is too large", places.width(), places.height()),
+                       "ask for fewer or smaller cells");
 
   const std::vector<Staging> stagings = set_stages(*rows, moments, pen, sheet);
   Picture page = blank(places.width(), places.height(), pen.theme.page);

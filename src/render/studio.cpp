@@ -4,28 +4,24 @@
 
 #include <cmath>
 
+#include "base/errors.h"
 #include "render/page.h"
 
 namespace ukemi {
 namespace {
 
-Error input_error(const Shot& shot, std::string what, std::string fix) {
-  return {ErrorKind::input, shot.character ? shot.character->path.string() : "", 0, 0, "", std::move(what),
-          std::move(fix)};
-}
-
 Status check(const Shot& shot) {
   if (shot.character == nullptr || shot.clip == nullptr)
     return Error{ErrorKind::internal, "", 0, 0, "", "a shot without character or clip", "report this"};
   if (shot.clip->frames.empty())
-    return input_error(shot, fmt::format("the clip '{}' has no frames", shot.clip->name),
+    return input_error(shot.character->path, fmt::format("the clip '{}' has no frames", shot.clip->name),
                        "choose another clip");
   if (!(shot.clip->fps > 0.0) || !std::isfinite(shot.clip->fps))
-    return input_error(shot, fmt::format("the clip '{}' has no frame rate", shot.clip->name),
+    return input_error(shot.character->path, fmt::format("the clip '{}' has no frame rate", shot.clip->name),
                        "choose another clip");
   for (const Pose& pose : shot.clip->frames)
     if (static_cast<int>(pose.size()) != shot.character->skeleton.size())
-      return input_error(shot,
+      return input_error(shot.character->path,
                          fmt::format("the clip '{}' is not of this character's skeleton", shot.clip->name),
                          "choose a clip of the same character");
   return Done{};
@@ -36,7 +32,7 @@ Status check_finite(const Shot& shot, const JointPaths& joints) {
     for (const Vec3& joint : joints[frame])
       if (!joint.allFinite() || joint.norm() > 1e6)
         return input_error(
-            shot,
+            shot.character->path,
             fmt::format("frame {} of the clip '{}' has a joint that is nowhere", frame, shot.clip->name),
             "check the clip's values");
   return Done{};

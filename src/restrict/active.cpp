@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 
+#include "base/errors.h"
 #include "base/files.h"
 
 namespace ukemi {
@@ -10,14 +11,10 @@ namespace {
 constexpr std::size_t kMaxBytes = 1u << 20;
 
 Error fail(const std::string& file, const toml::node& where, std::string joint, std::string what) {
-  const toml::source_position at = where.source().begin;
-  return {ErrorKind::input,
-          file,
-          static_cast<int>(at.line),
-          static_cast<int>(at.column),
-          std::move(joint),
-          std::move(what),
-          "give [a_y, a_z, alpha] in degrees per second, each above 0"};
+  return error_at(where.source().begin,
+                  error_about(std::move(joint),
+                              input_error(file, std::move(what),
+                                          "give [a_y, a_z, alpha] in degrees per second, each above 0")));
 }
 
 /// "knee" for knee_l and knee_r.
@@ -59,14 +56,8 @@ Result<ActiveThresholds> load_active_thresholds(const std::string& file) {
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     return read(toml::parse(text, path.string()), path.string());
   } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    return Error{ErrorKind::input,
-                 path.string(),
-                 static_cast<int>(at.line),
-                 static_cast<int>(at.column),
-                 "",
-                 std::string(error.description()),
-                 "correct the TOML"};
+    return error_at(error.source().begin,
+                    input_error(path, std::string(error.description()), "correct the TOML"));
   }
 }
 

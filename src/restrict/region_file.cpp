@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/errors.h"
 #include "base/files.h"
 #include "restrict/range_of_motion.h"
 #include "restrict/region_tables.h"
@@ -75,14 +76,8 @@ class RegionReader {
   }
 
   Error fail(const toml::node& where, std::string joint, std::string what, std::string fix) const {
-    const toml::source_position at = where.source().begin;
-    return {ErrorKind::input,
-            file_,
-            static_cast<int>(at.line),
-            static_cast<int>(at.column),
-            std::move(joint),
-            std::move(what),
-            std::move(fix)};
+    return error_at(where.source().begin,
+                    error_about(std::move(joint), input_error(file_, std::move(what), std::move(fix))));
   }
 
   Status read_joint(const toml::table& table) {
@@ -277,14 +272,8 @@ Result<RangeOfMotion> parse_region(std::string_view text, const std::string& fil
   try {
     return RegionReader(file, bases).read(toml::parse(text, file));
   } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    return Error{ErrorKind::input,
-                 file,
-                 static_cast<int>(at.line),
-                 static_cast<int>(at.column),
-                 "",
-                 std::string(error.description()),
-                 "correct the TOML"};
+    return error_at(error.source().begin,
+                    input_error(file, std::string(error.description()), "correct the TOML"));
   }
 }
 

@@ -357,6 +357,43 @@ TEST_F(Batch, EndsWithTheReviewPage) {
   EXPECT_FALSE(fs::exists(folder / "without/index.html"));
 }
 
+TEST_F(Batch, ThePageIsMadeAgainWhenItWouldDifferAndLeftAloneElse) {
+  const std::string recipe =
+      "format = 1\ncharacters = [\"mannequin\"]\n[settings]\nduration = 0.1\n[[reaction]]\nname = \"one\"\n";
+  write("r.toml", recipe);
+  const std::vector<std::string> again = {"batch", "r.toml", "-o", "out", "--resume"};
+  EXPECT_EQ(run({"batch", "r.toml", "-o", "out"}).status, 0);
+  const auto page = [&] {
+    std::map<std::string, fs::file_time_type> times = {
+        {"index.html", fs::last_write_time(folder / "out/index.html")}};
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "out/review"))
+      if (entry.is_regular_file()) times[entry.path().string()] = entry.last_write_time();
+    return times;
+  };
+  const auto first = page();
+  ASSERT_GE(first.size(), 8u);
+  EXPECT_EQ(run(again).status, 0);
+  EXPECT_EQ(page(), first) << "nothing has changed";
+
+  write("r.toml", recipe + "[[reaction]]\nname = \"two\"\n");
+  EXPECT_EQ(run({"batch", "r.toml", "-o", "out", "--resume", "--no-review"}).status, 0);
+  EXPECT_EQ(page(), first) << "no page was asked for";
+  EXPECT_EQ(run(again).status, 0);
+  const auto second = page();
+  EXPECT_GT(second.at("index.html"), first.at("index.html"))
+      << "the manifest has changed since the page was made";
+
+  fs::remove(folder / "out/mannequin/two.glb");
+  EXPECT_EQ(run({"batch", "r.toml", "-o", "out", "--resume", "--no-review"}).status, 0);
+  EXPECT_EQ(run(again).status, 0);
+  const auto third = page();
+  EXPECT_GT(third.at("index.html"), second.at("index.html")) << "a clip is newer than the page";
+
+  write("out/review/review.js", "of an older program");
+  EXPECT_EQ(run(again).status, 0);
+  EXPECT_GT(page().at("index.html"), third.at("index.html")) << "the page's program has changed";
+}
+
 TEST_F(Batch, ARecipeCannotWriteOutsideTheFolder) {
   write("r.toml",
         "format = 1\ncharacters = [\"mannequin\"]\noutputs = [\"bvh\"]\n[settings]\nduration = 0.1\n"
