@@ -27,6 +27,7 @@ namespace ukemi {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr double kMostTransforms = 16'777'216.0;  // of a clip: 9 GB while its keys are reduced
 const double kStartMargin = radians(3.0);  // how far inside its range every joint of the start pose lies
 
 /// Wall-clock time of the stages.
@@ -74,6 +75,17 @@ void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_t
   trajectory.frames.resize(frames);
   for (Prop& prop : trajectory.props)
     if (prop.poses.size() > frames) prop.poses.resize(frames);
+}
+
+Status check_clip_size(const Character& character, const BakeSettings& settings,
+                       const Trajectory& trajectory) {
+  const double frames = static_cast<double>(trajectory.frames.size()) +
+                        (settings.lead_s + settings.recover_s.value_or(0.0)) * trajectory.fps;
+  const double nodes = character.skeleton.size();
+  if (frames * nodes <= kMostTransforms) return Done{};
+  return usage_error(fmt::format("{:.0f} frames of {:.0f} nodes are more than {:.0f} transforms", frames,
+                                 nodes, kMostTransforms),
+                     "give a shorter --duration or a lower --fps, or take a file with fewer nodes");
 }
 
 /// The clip on the character's own skeleton, where the file places the figure.
@@ -247,6 +259,8 @@ Result<BakeOutcome> bake(const Character& character, const BakeSettings& setting
   if (settings.until_rest)
     trim_still_tail(outcome.simulation.trajectory, outcome.simulation.figures.rest_time_s, settings.hold_s);
   outcome.timings_s.simulate = watch.lap();
+  if (const Status status = check_clip_size(character, settings, outcome.simulation.trajectory); !status)
+    return status.error();
   make_clip(character, outcome);
   if (settings.extra_bones_play) play_extra_bones(character, outcome);
   if (settings.smooth_hz) smooth(outcome.clip, *settings.smooth_hz);

@@ -41,14 +41,19 @@ Error cannot_write(const fs::path& path, const std::string& why) {
 }
 
 void take_verdict(std::string_view line, Verdicts& verdicts) {
-  const Json json = Json::parse(line, nullptr, false);
-  if (!json.is_object() || !json.contains("take") || !json["take"].is_number_integer()) return;
-  const std::pair key(json.value("character", ""), json.value("name", ""));
-  verdicts.takes[key] = json["take"];
-  if (json.value("left_out", false))
-    verdicts.left_out[key] = json.value("comment", "");
-  else
-    verdicts.left_out.erase(key);
+  try {
+    const Json json = Json::parse(line);
+    const std::pair key(json.at("character").get<std::string>(), json.at("name").get<std::string>());
+    const int take = json.at("take");
+    const bool left_out = json.at("left_out");
+    const std::string comment = json.at("comment");
+    verdicts.takes[key] = take;
+    if (left_out)
+      verdicts.left_out[key] = comment;
+    else
+      verdicts.left_out.erase(key);
+  } catch (const Json::exception&) {  // a line that was cut off
+  }
 }
 
 void take_line(std::string_view line, History& history) {

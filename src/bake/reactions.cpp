@@ -16,7 +16,7 @@ namespace ukemi {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMostReactions = 1000000;
+constexpr std::size_t kMostReactions = 100000;  // 1 GB
 
 void override_with(RecipeSettings& settings, const RecipeSettings& more) {
   for (const auto& [name, value] : more) settings[name] = value;
@@ -115,10 +115,20 @@ RecipeSettings combination(const RecipeMatrix& matrix, std::size_t i) {
   return settings;
 }
 
-/// Saturates at one more than is allowed.
 std::size_t combinations(const RecipeMatrix& matrix) {
   std::size_t count = 1;
-  for (const auto& axis : matrix.axes) count = std::min(count * axis.second.size(), kMostReactions + 1);
+  for (const auto& axis : matrix.axes) count *= axis.second.size();
+  return count;
+}
+
+/// As a floating-point number: many axes multiply to more than any integer holds.
+double reaction_count(const Recipe& recipe) {
+  double count = 0.0;
+  for (const RecipeMatrix& matrix : recipe.matrices) {
+    double of_matrix = static_cast<double>(matrix.characters.size()) * matrix.variations;
+    for (const auto& axis : matrix.axes) of_matrix *= static_cast<double>(axis.second.size());
+    count += of_matrix;
+  }
   return count;
 }
 
@@ -154,12 +164,8 @@ class Expansion {
       if (!range) return range.error();
       settings->range = std::move(*range);
     }
-    for (int variation = 0; variation < matrix.variations; ++variation) {
-      if (reactions_.size() >= kMostReactions)
-        return usage_error(recipe_.file, fmt::format("describes more than {} reactions", kMostReactions),
-                           "split it into several recipes");
+    for (int variation = 0; variation < matrix.variations; ++variation)
       reactions_.push_back(reaction_of(matrix, *settings, variation));
-    }
     return Done{};
   }
 
@@ -213,6 +219,10 @@ class Expansion {
 }  // namespace
 
 Result<std::vector<Reaction>> reactions_of(const Recipe& recipe, const Takes& takes) {
+  if (const double count = reaction_count(recipe); count > static_cast<double>(kMostReactions))
+    return usage_error(recipe.file,
+                       fmt::format("describes {:.7g} reactions; the limit is {}", count, kMostReactions),
+                       "split it into several recipes");
   std::vector<Reaction> reactions;
   Expansion expansion(recipe, takes, reactions);
   for (std::size_t i = 0; i < recipe.characters.size(); ++i)

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bake/file_names.h"
+
 namespace ukemi {
 namespace {
 
@@ -84,6 +86,8 @@ std::optional<ReactionRecord> parse_record(std::string_view line) {
     if (!json.at("figures").is_null()) record.figures = figures_from(json.at("figures"));
     for (const Json& file : json.at("files"))
       record.files.push_back({file.at("name"), file.at("bytes"), file.at("sha256")});
+    for (const WrittenFile& file : record.files)
+      if (!is_inside(file.name)) return std::nullopt;
     record.warnings = json.at("warnings").get<std::vector<std::string>>();
     record.error = json.at("error");
     record.fix = json.at("fix");

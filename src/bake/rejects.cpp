@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
@@ -19,23 +20,32 @@ Error refused(const fs::path& file, std::string what) {
   return input_error(file, std::move(what), "give the file that the review page saves for this batch");
 }
 
-/// Index of the reaction that an entry names.
-Result<std::size_t> reaction_named(const fs::path& file, const Json& entry, const BatchPlan& plan) {
-  const std::string character = entry.at("character"), name = entry.at("name");
+using Key = std::pair<std::string, std::string>;  // character, reaction
+using Indices = std::map<Key, std::size_t>;       // of the plan's reactions
+
+Indices indices_of(const BatchPlan& plan) {
+  Indices indices;
   for (std::size_t i = 0; i < plan.reactions.size(); ++i)
-    if (plan.reactions[i].name == name &&
-        plan.recipe.characters[plan.reactions[i].character].name == character)
-      return i;
-  return refused(file, fmt::format("the recipe has no reaction '{}' of '{}'", name, character));
+    indices[{plan.recipe.characters[plan.reactions[i].character].name, plan.reactions[i].name}] = i;
+  return indices;
 }
 
-Status reject(const fs::path& file, const Json& entry, BatchPlan& plan) {
-  const auto i = reaction_named(file, entry, plan);
-  if (!i) return i.error();
-  if (entry.contains("digest") && entry["digest"] != plan.planned[*i].digest) return Done{};
-  const std::pair key(entry.at("character").get<std::string>(), entry.at("name").get<std::string>());
+/// The reaction that an entry names.
+Result<Indices::const_iterator> reaction_named(const fs::path& file, const Json& entry,
+                                               const Indices& indices) {
+  const Key key(entry.at("character").get<std::string>(), entry.at("name").get<std::string>());
+  const auto found = indices.find(key);
+  if (found != indices.end()) return found;
+  return refused(file, fmt::format("the recipe has no reaction '{}' of '{}'", key.second, key.first));
+}
+
+Status reject(const fs::path& file, const Json& entry, const Indices& indices, BatchPlan& plan) {
+  const auto named = reaction_named(file, entry, indices);
+  if (!named) return named.error();
+  const auto& [key, i] = **named;
+  if (entry.contains("digest") && entry["digest"] != plan.planned[i].digest) return Done{};
   Verdicts& known = plan.history.verdicts;
-  const bool varies = plan.reactions[*i].varies;
+  const bool varies = plan.reactions[i].varies;
   const int take = known.takes[key] + (varies ? 1 : 0);
   known.takes[key] = plan.news.takes[key] = take;
   if (varies) return Done{};
@@ -43,10 +53,10 @@ Status reject(const fs::path& file, const Json& entry, BatchPlan& plan) {
   return Done{};
 }
 
-Status accept(const fs::path& file, const Json& entry, BatchPlan& plan) {
-  const auto i = reaction_named(file, entry, plan);
-  if (!i) return i.error();
-  const std::pair key(entry.at("character").get<std::string>(), entry.at("name").get<std::string>());
+Status accept(const fs::path& file, const Json& entry, const Indices& indices, BatchPlan& plan) {
+  const auto named = reaction_named(file, entry, indices);
+  if (!named) return named.error();
+  const Key& key = (*named)->first;
   if (plan.history.verdicts.left_out.erase(key) == 0) return Done{};
   plan.news.takes[key] = plan.history.verdicts.takes[key];
   return Done{};
@@ -60,10 +70,11 @@ Status take_rejects(const fs::path& file, BatchPlan& plan) {
   try {
     const Json json = Json::parse(bytes->begin(), bytes->end());
     if (json.at("format") != 1) return refused(file, "has a format that this program does not know");
+    const Indices indices = indices_of(plan);
     for (const Json& entry : json.value("rejects", Json::array()))
-      if (const Status status = reject(file, entry, plan); !status) return status;
+      if (const Status status = reject(file, entry, indices, plan); !status) return status;
     for (const Json& entry : json.value("accepts", Json::array()))
-      if (const Status status = accept(file, entry, plan); !status) return status;
+      if (const Status status = accept(file, entry, indices, plan); !status) return status;
   } catch (const Json::exception& exception) {
     return refused(file, fmt::format("is no list of verdicts: {}", exception.what()));
   }

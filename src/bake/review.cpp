@@ -169,6 +169,21 @@ Status make_one(const fs::path& folder, const ReviewSource& source, PageFolder& 
   return write_clip(source, page, made);
 }
 
+/// An exception must not leave its thread.
+Status make_guarded(const fs::path& folder, const ReviewSource& source, PageFolder& page, Made& made) {
+  try {
+    return make_one(folder, source, page, made);
+  } catch (const std::exception& exception) {
+    return Error{ErrorKind::internal,
+                 (folder / source.clip).string(),
+                 0,
+                 0,
+                 "",
+                 std::string("unexpected failure: ") + exception.what(),
+                 "this is a bug of the program; report it with the file"};
+  }
+}
+
 /// Runs make_one on every source. Errors: the first one.
 Status make_all(const fs::path& folder, const std::vector<ReviewSource>& sources, PageFolder& page,
                 const ReviewSettings& settings, const std::function<void(int, int)>& progress,
@@ -179,7 +194,7 @@ Status make_all(const fs::path& folder, const std::vector<ReviewSource>& sources
   int done = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < sources.size(); i = next++) {
-      const Status status = make_one(folder, sources[i], page, made[i]);
+      const Status status = make_guarded(folder, sources[i], page, made[i]);
       const std::lock_guard lock(mutex);
       if (failed) return;
       if (!status) {
@@ -244,14 +259,20 @@ std::string table_json(const ReviewSources& sources, const std::vector<Made>& ma
   return script_safe(json.dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 
-/// The page itself, last, so that it never shows half a table. Errors: output, input (assets).
-Status write_page(const fs::path& folder, PageFolder& page, const ReviewSources& sources,
-                  const std::vector<Made>& made) {
+/// What every page has. Errors: output, input (assets).
+Status write_program(PageFolder& page) {
   for (const char* file : kProgramFiles) {
     const auto text = read_asset(file);
     if (!text) return text.error();
     if (Status status = page.write(file, *text); !status) return status;
   }
+  return Done{};
+}
+
+/// The page itself, last, so that it never shows half a table. Errors: output, input (assets).
+Status write_page(const fs::path& folder, PageFolder& page, const ReviewSources& sources,
+                  const std::vector<Made>& made) {
+  if (Status status = write_program(page); !status) return status;
   const std::string table = table_json(sources, made, manifest_digest(folder));
   if (Status status = page.write(kTableFile, script("reactions", "all", table)); !status) return status;
   auto html = read_asset("index.html");
@@ -311,12 +332,19 @@ Result<Review> write_review(const fs::path& folder, const ReviewSettings& settin
   const auto sources = review_sources(folder, diagnostics);
   if (!sources) return sources.error();
   if (const Status status = check_ours(folder); !status) return status.error();
-  PageFolder page(folder / kPageFolder);
-  if (const Status status = page.make(); !status) return status.error();
+  const fs::path page_folder = folder / kPageFolder;
+  std::error_code error;
+  const bool is_new = !fs::exists(page_folder, error);
+  PageFolder page(page_folder);
   std::vector<Made> made(sources->reactions.size());
-  if (const Status status = make_all(folder, sources->reactions, page, settings, progress, made); !status)
+  Status status = page.make();
+  if (status && is_new) status = write_program(page);  // a page that is cut short is known as ours
+  if (status) status = make_all(folder, sources->reactions, page, settings, progress, made);
+  if (status) status = write_page(folder, page, *sources, made);
+  if (!status) {
+    if (is_new) fs::remove_all(page_folder, error);
     return status.error();
-  if (const Status status = write_page(folder, page, *sources, made); !status) return status.error();
+  }
   page.remove_leftovers();
   for (const Made& one : made)
     for (const Warning& warning : one.diagnostics.warnings()) diagnostics.warn(warning.subject, warning.what);

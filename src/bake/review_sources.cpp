@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "bake/digest.h"
+#include "bake/file_names.h"
 #include "bake/outputs.h"
 #include "base/errors.h"
 #include "base/files.h"
@@ -86,12 +87,7 @@ fs::path clip_among(const std::vector<std::string>& outputs) {
   return {};
 }
 
-/// Relative, and inside the folder: a manifest cannot make the page show other places of the disk.
-bool is_inside(const fs::path& path) {
-  const fs::path normal = path.lexically_normal();
-  return !normal.empty() && !normal.is_absolute() && *normal.begin() != "..";
-}
-
+/// Nothing for what lies elsewhere: a manifest cannot make the page show other places of the disk.
 fs::path path_at(const Json& entry, const char* key, const fs::path& folder) {
   const fs::path path = text_at(entry, {key});
   std::error_code error;

@@ -84,7 +84,7 @@ int bake_command(const Arguments& arguments) {
   if (!request.quiet) print_warnings(diagnostics);
   if (!baked) return print_error(baked.error());
   if (request.quiet) return 0;
-  return print_result(request.json ? baked->report : summary(request, *baked), 0);
+  return request.json ? print_json(baked->report, 0) : print_result(summary(request, *baked), 0);
 }
 
 }  // namespace ukemi

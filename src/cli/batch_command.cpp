@@ -233,7 +233,8 @@ int run_planned(const BatchRequest& request, const BatchPlan& plan) {
   const int status = all_well ? 0 : 1;
   if (request.quiet) return status;
   const Manifest manifest{&plan.recipe, result->entries.size(), result->entries};
-  return print_result(request.json ? manifest_json(manifest) : summary(request, plan, *result), status);
+  return request.json ? print_json(manifest_json(manifest), status)
+                      : print_result(summary(request, plan, *result), status);
 }
 
 }  // namespace

@@ -121,18 +121,25 @@ Result<Compared> run_comparison(const CompareRequest& request, Diagnostics& diag
   return compared;
 }
 
-/// The files of the folder, written once everything is known.
+Status write_files(const fs::path& folder, const Compared& compared) {
+  PendingFiles files;
+  for (const NamedPicture& picture : compared.pictures)
+    if (const Status status = files.add(folder / picture.name, picture.png); !status) return status.error();
+  const std::string json = comparison_json(compared.comparison), text = comparison_text(compared.comparison);
+  if (const Status status = files.add(folder / "compare.json", json); !status) return status.error();
+  if (const Status status = files.add(folder / "compare.txt", text); !status) return status.error();
+  return files.commit();
+}
+
+/// The files of the folder, together, once everything is known.
 Status write_folder(const fs::path& folder, const Compared& compared) {
   std::error_code error;
-  fs::create_directory(folder, error);
+  const bool is_new = fs::create_directory(folder, error);
   if (error)
     return output_error(folder, "cannot make the folder: " + error.message(), "choose another folder");
-  for (const NamedPicture& picture : compared.pictures)
-    if (const Status status = write_file(folder / picture.name, picture.png); !status) return status.error();
-  if (const Status status = write_file(folder / "compare.json", comparison_json(compared.comparison));
-      !status)
-    return status.error();
-  return write_file(folder / "compare.txt", comparison_text(compared.comparison));
+  const Status status = write_files(folder, compared);
+  if (!status && is_new) fs::remove(folder, error);
+  return status;
 }
 
 }  // namespace
@@ -155,8 +162,8 @@ int compare_command(const Arguments& arguments) {
     if (const Status status = write_folder(request.folder, *compared); !status)
       return print_error(status.error());
   if (request.quiet) return 0;
-  return print_result(
-      request.json ? comparison_json(compared->comparison) : comparison_text(compared->comparison), 0);
+  return request.json ? print_json(comparison_json(compared->comparison), 0)
+                      : print_result(comparison_text(compared->comparison), 0);
 }
 
 }  // namespace ukemi

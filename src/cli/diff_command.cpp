@@ -28,9 +28,9 @@ int diff_command(const Arguments& arguments) {
   const auto difference = difference_of_files(a, b, settings, diagnostics);
   print_warnings(diagnostics);
   if (!difference) return print_error(difference.error());
-  return print_result(
-      json ? difference_json(a, b, *difference, settings) : difference_text(a, b, *difference, settings),
-      difference->within_tolerance ? 0 : 1);
+  const int status = difference->within_tolerance ? 0 : 1;
+  return json ? print_json(difference_json(a, b, *difference, settings), status)
+              : print_result(difference_text(a, b, *difference, settings), status);
 }
 
 }  // namespace ukemi

@@ -28,8 +28,9 @@ int inspect_command(const Arguments& arguments) {
   print_warnings(diagnostics);
   if (!inspection) return print_error(inspection.error());
   if (inspection->verdict == Verdict::malformed) print_error(*inspection->error);
-  return print_result(json ? inspection_json(*inspection, diagnostics) : inspection_text(file, *inspection),
-                      exit_status(inspection->verdict));
+  const int status = exit_status(inspection->verdict);
+  return json ? print_json(inspection_json(*inspection, diagnostics), status)
+              : print_result(inspection_text(file, *inspection), status);
 }
 
 }  // namespace ukemi

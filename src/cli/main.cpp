@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -25,6 +26,9 @@ int main(int count, char** words) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error, not the program's end
   try {
     return ukemi::run({words + (count > 0 ? 1 : 0), words + count});
+  } catch (const std::bad_alloc&) {
+    return ukemi::print_error({ukemi::ErrorKind::input, "", 0, 0, "", "this needs more memory than there is",
+                               "use simpler files, a shorter clip or fewer frames per second"});
   } catch (const std::exception& error) {
     return ukemi::print_error(
         {ukemi::ErrorKind::internal, "", 0, 0, "", std::string("unexpected failure: ") + error.what(),

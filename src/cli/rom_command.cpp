@@ -107,7 +107,7 @@ int rom_command(const Arguments& arguments) {
     if (const Status status = write_file(request.output, *png); !status) return print_error(status.error());
   }
   const bool too_far = request.max_excess_deg && largest_excess_deg(*rom) > *request.max_excess_deg;
-  if (request.json) return print_result(rom_json(*rom), too_far ? 1 : 0);
+  if (request.json) return print_json(rom_json(*rom), too_far ? 1 : 0);
   std::string text = rom_text(*rom);
   if (too_far)
     text += fmt::format("{:.2f} degrees outside, more than --max-excess {:g}\n", largest_excess_deg(*rom),

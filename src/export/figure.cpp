@@ -42,9 +42,9 @@ Figure make_figure(const Character& character, const Humanoid& humanoid) {
   const bool has_reference = humanoid.reference.size() == skeleton.nodes.size();
   const auto bind = world_transforms(skeleton, has_reference ? humanoid.reference : rest_pose(skeleton));
   const auto below = skeleton.children();
-  double height = 0.0;
-  for (const Affine& a : bind)
-    for (const Affine& b : bind) height = std::max(height, (a.translation() - b.translation()).norm());
+  Eigen::AlignedBox3d box;
+  for (const Affine& node : bind) box.extend(node.translation().matrix());
+  const double height = box.sizes().maxCoeff();
   Figure figure;
   for (int node = 0; node < skeleton.size(); ++node) {
     const Vec3 from = bind[node].translation();

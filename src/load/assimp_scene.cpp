@@ -37,7 +37,6 @@ constexpr int kArrayBuffer = 34962;
 constexpr int kElementBuffer = 34963;
 // Keys nearer than this are one key: files hold some that are equal as float seconds.
 constexpr double kMinKeyDistance_s = 1e-4;
-constexpr std::size_t kMaxNodes = 100'000;
 
 std::string name_of(const aiString& name) { return load::utf8_name({name.data, name.length}); }
 
@@ -182,8 +181,8 @@ class SceneConverter {
       const auto [node, parent] = waiting.back();
       waiting.pop_back();
       const int index = static_cast<int>(nodes_.size());
-      if (nodes_.size() >= kMaxNodes)
-        throw load::Refusal(fmt::format("has more than {} nodes", kMaxNodes), "use a simpler file");
+      if (nodes_.size() >= load::kMostNodes)
+        throw load::Refusal(fmt::format("has more than {} nodes", load::kMostNodes), "use a simpler file");
       nodes_.push_back(node);
       node_json_.push_back(node_json(*node));
       if (parent >= 0) node_json_[parent]["children"].push_back(index);

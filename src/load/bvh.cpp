@@ -25,6 +25,7 @@ using load::same_word;
 
 constexpr int kMaxDepth = 1000;
 constexpr long kMaxChannelsPerJoint = 6;
+constexpr std::size_t kMostNumbers = 100'000'000;  // of the motion: 2 to 5 GB
 constexpr double kLongest_s = 86400.0;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
@@ -162,6 +163,9 @@ class BvhReader {
     if (static_cast<int>(open_.size()) >= kMaxDepth)
       return error(scanner_.line(), fmt::format("joints are nested deeper than {}", kMaxDepth),
                    "use a file with fewer joints in a row");
+    if (skeleton.nodes.size() > load::kMostNodes)
+      return error(scanner_.line(), fmt::format("has more than {} joints", load::kMostNodes),
+                   "use a file with fewer joints");
     if (Status s = expect_word("{"); !s) return s;
     open_.push_back({skeleton.size() - 1});
     return Done{};
@@ -338,6 +342,11 @@ class BvhReader {
 
   Status read_rows() {
     channel_count_ = channel_count();
+    if (announced_ > kMostNumbers / channel_count_)
+      return error(frames_line_,
+                   fmt::format("announces {} frames of {} numbers, together more than {}", announced_,
+                               channel_count_, kMostNumbers),
+                   "cut the motion into shorter files");
     source.frames.reserve(std::min(announced_, scanner_.bytes_left() / (2 * channel_count_) + 1));
     std::size_t extra = 0;
     std::vector<double> row;

@@ -72,8 +72,9 @@ class GltfReader {
     const load::JsonDocument document(text_of(container.document));
     const JsonView root = document.root();
     check_asset(root);
-    load::resolve_buffers(root, container);
-    Accessors accessors(root, container.document.buffers);
+    load::MemoryBudget budget;
+    load::resolve_buffers(root, container, budget);
+    Accessors accessors(root, container.document.buffers, budget);
     read_nodes(root);
     read_skins(root, accessors);
     character_.images = load::read_images(root, accessors, container.document.folder, path_, diagnostics_);
@@ -109,6 +110,9 @@ class GltfReader {
     nodes_ = root.items("nodes");
     Skeleton& skeleton = character_.skeleton;
     if (nodes_.empty()) throw Refusal("has no nodes", "use a file with a character in it");
+    if (nodes_.size() > load::kMostNodes)
+      throw Refusal(fmt::format("has {} nodes; the limit is {}", nodes_.size(), load::kMostNodes),
+                    "use a simpler file");
     skeleton.nodes.resize(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       skeleton.nodes[i].name = nodes_[i].text("name", "");
@@ -158,6 +162,7 @@ class GltfReader {
         skin.joints.push_back(joint.index(nodes_.size(), "nodes"));
       if (skin.joints.empty() || skin.joints.size() > 65535)
         json.at("joints").refuse(fmt::format("has {} joints", skin.joints.size()));
+      accessors.budget().spend(skin.joints.size() * sizeof(Affine), json.place());
       json.index("skeleton", nodes_.size(), "nodes");
       skin.inverse_bind.assign(skin.joints.size(), Affine::Identity());
       const int accessor = json.index("inverseBindMatrices", accessors.size(), "accessors");
@@ -282,6 +287,7 @@ class GltfReader {
                                               times.size()));
     if (cubic && times.size() == 1) sampler.at("input").refuse("has one key, but CUBICSPLINE needs two");
     const std::vector<float> values = accessors.floats(output, track.path == TrackPath::rotation ? 4 : 3);
+    accessors.budget().spend((times.size() + values.size()) * sizeof(double), accessors.place(output));
     track.times.assign(times.begin(), times.end());
     track.values.assign(values.begin(), values.end());
   }

@@ -102,8 +102,9 @@ double largest(ComponentType type) {
   }
 }
 
-Accessors::Accessors(const JsonView& root, const std::vector<std::vector<std::uint8_t>>& buffers)
-    : buffers_(buffers) {
+Accessors::Accessors(const JsonView& root, const std::vector<std::vector<std::uint8_t>>& buffers,
+                     MemoryBudget& budget)
+    : buffers_(buffers), budget_(budget) {
   for (const JsonView& view : root.items("bufferViews")) read_view(view, buffers);
   for (const JsonView& accessor : root.items("accessors")) read_accessor(accessor);
 }
@@ -193,7 +194,10 @@ std::span<const std::uint8_t> Accessors::view_bytes(int index) {
                   "export the file again");
   if (!view.compressed) return std::span(buffers_[view.buffer]).subspan(view.offset, view.length);
   auto found = decompressed_.find(index);
-  if (found == decompressed_.end()) found = decompressed_.emplace(index, decompressed(view)).first;
+  if (found == decompressed_.end()) {
+    budget_.spend(view.length, view.place);
+    found = decompressed_.emplace(index, decompressed(view)).first;
+  }
   return found->second;
 }
 
@@ -282,6 +286,7 @@ std::vector<Number> Accessors::read(const Accessor& accessor, int components) {
                               accessor.components, components),
                   "export the file again");
   const auto width = static_cast<std::size_t>(components);
+  budget_.spend((accessor.count + accessor.sparse_count) * width * sizeof(Number), accessor.place);
   std::vector<Number> numbers(accessor.count * width);
   if (accessor.layout.view >= 0)
     copy(accessor.layout, accessor.component_type, accessor.count, numbers.data());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "load/json_view.h"
+#include "load/memory_budget.h"
 
 namespace ukemi::load {
 
@@ -29,8 +30,9 @@ double largest(ComponentType type);
 /// when it is made, values when they are read. Throws Refusal.
 class Accessors {
  public:
-  /// `buffers` must outlive this.
-  Accessors(const JsonView& root, const std::vector<std::vector<std::uint8_t>>& buffers);
+  /// `buffers` and `budget`, which pays for all that is read, must outlive this.
+  Accessors(const JsonView& root, const std::vector<std::vector<std::uint8_t>>& buffers,
+            MemoryBudget& budget);
 
   std::size_t size() const { return accessors_.size(); }
   std::size_t view_count() const { return views_.size(); }
@@ -47,6 +49,7 @@ class Accessors {
   std::vector<std::uint32_t> unsigned_integers(int accessor, int components);
   /// Content of a buffer view, decompressed.
   std::span<const std::uint8_t> view_bytes(int view);
+  MemoryBudget& budget() { return budget_; }
 
  private:
   struct View {
@@ -94,6 +97,7 @@ class Accessors {
   std::vector<Number> read(const Accessor& accessor, int components);
 
   const std::vector<std::vector<std::uint8_t>>& buffers_;
+  MemoryBudget& budget_;
   std::vector<View> views_;
   std::vector<Accessor> accessors_;
   std::map<int, std::vector<std::uint8_t>> decompressed_;

@@ -156,11 +156,12 @@ Result<std::vector<std::uint8_t>> resolve_uri(const JsonView& uri, const std::fi
   return read_file(safe_path(uri, text, folder), static_cast<std::size_t>(kMaxBufferBytes));
 }
 
-void resolve_buffers(const JsonView& root, GltfContainer& container) {
+void resolve_buffers(const JsonView& root, GltfContainer& container, MemoryBudget& budget) {
   GltfDocument& document = container.document;
   for (const JsonView& buffer : root.items("buffers")) {
     const auto announced = static_cast<std::size_t>(buffer.at("byteLength").integer(1, kMaxBufferBytes));
     std::vector<std::uint8_t> bytes;
+    budget.spend(announced, buffer.place());
     if (const auto uri = buffer.find("uri")) {
       auto resolved = resolve_uri(*uri, document.folder);
       if (!resolved)

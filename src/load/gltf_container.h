@@ -10,6 +10,7 @@
 #include "base/character.h"
 #include "base/result.h"
 #include "load/json_view.h"
+#include "load/memory_budget.h"
 
 namespace ukemi::load {
 
@@ -32,6 +33,6 @@ Result<std::vector<std::uint8_t>> resolve_uri(const JsonView& uri, const std::fi
 
 /// Fills document.buffers: buffer i has the bytes it announces, or none for a buffer without data (the
 /// fallback of a compressed one). Throws Refusal.
-void resolve_buffers(const JsonView& root, GltfContainer& container);
+void resolve_buffers(const JsonView& root, GltfContainer& container, MemoryBudget& budget);
 
 }  // namespace ukemi::load

@@ -16,9 +16,10 @@ namespace ukemi::load {
 namespace {
 
 std::vector<float> attribute_values(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
-                                    const JsonView& place, int accessor, const Accessors& accessors) {
+                                    const JsonView& place, int accessor, Accessors& accessors) {
   const int components = accessors.components(accessor);
   const auto width = static_cast<std::size_t>(components);
+  accessors.budget().spend(mesh.num_points() * width * sizeof(float), place.place());
   std::vector<float> values(mesh.num_points() * width);
   for (std::uint32_t point = 0; point < mesh.num_points(); ++point) {
     const auto value = attribute.mapped_index(draco::PointIndex(point));
@@ -51,6 +52,7 @@ DracoMesh decode_draco(const JsonView& extension, const JsonView& primitive, Acc
   const draco::Mesh& mesh = *decoded.value();
 
   DracoMesh result;
+  accessors.budget().spend(std::size_t{mesh.num_faces()} * 12, extension.place());
   result.vertex_count = mesh.num_points();
   for (std::uint32_t f = 0; f < mesh.num_faces(); ++f)
     for (const auto& point : mesh.face(draco::FaceIndex(f))) result.indices.push_back(point.value());

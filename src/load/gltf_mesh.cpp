@@ -349,6 +349,7 @@ std::vector<Image> read_images(const JsonView& root, Accessors& accessors,
     } else {
       json.refuse("has neither a uri nor a bufferView");
     }
+    accessors.budget().spend(image.bytes.size(), json.place());
     image.mime = mime_of(image.bytes, json.text("mimeType", ""));
     images.push_back(std::move(image));
   }

@@ -12,6 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kMaxDepth = 500;
+constexpr std::size_t kMostValues = 10'000'000;  // 2 GB of parsed document
 constexpr const char* kFix = "correct the file, or export it again";
 
 const Json& json(const void* value) { return *static_cast<const Json*>(value); }
@@ -23,9 +24,11 @@ const Json& json(const void* value) { return *static_cast<const Json*>(value); }
   throw Refusal("JSON: " + what, kFix, line, static_cast<int>(before.size() - line_start) + 1);
 }
 
-/// Refuses nesting that would exhaust the stack of whoever walks the document.
-void check_depth(std::string_view text) {
+/// Refuses nesting that would exhaust the stack of whoever walks the document, and more values than its
+/// memory should hold: each but the first stands behind a bracket, a comma or a colon.
+void check_size(std::string_view text) {
   int depth = 0;
+  std::size_t values = 1;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -38,9 +41,13 @@ void check_depth(std::string_view text) {
       in_string = true;
     } else if (c == '{' || c == '[') {
       if (++depth > kMaxDepth) refuse_syntax(text, i, fmt::format("nested deeper than {}", kMaxDepth));
+      ++values;
     } else if (c == '}' || c == ']') {
       --depth;
+    } else if (c == ',' || c == ':') {
+      ++values;
     }
+    if (values > kMostValues) refuse_syntax(text, i, fmt::format("more than {} values", kMostValues));
   }
 }
 
@@ -54,7 +61,7 @@ std::string short_message(const std::string& message) {
 }  // namespace
 
 JsonDocument::JsonDocument(std::string_view text) {
-  check_depth(text);
+  check_size(text);
   try {
     auto value = std::make_shared<const Json>(Json::parse(text));
     if (!value->is_object()) refuse_syntax(text, 0, "an object expected");

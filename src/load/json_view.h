@@ -65,7 +65,7 @@ class JsonView {
 };
 
 /// A parsed JSON text whose root is an object. Refuses syntax errors with line and column, numbers that do
-/// not fit a double, and nesting deeper than 500.
+/// not fit a double, nesting deeper than 500, and more than 10 million values.
 class JsonDocument {
  public:
   explicit JsonDocument(std::string_view text);

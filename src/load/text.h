@@ -10,6 +10,9 @@
 
 namespace ukemi::load {
 
+/// Nodes or joints of a file.
+inline constexpr std::size_t kMostNodes = std::size_t{1} << 18;
+
 /// True when the two are the same but for ASCII case.
 bool same_word(std::string_view a, std::string_view b);
 

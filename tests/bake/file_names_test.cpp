@@ -24,6 +24,22 @@ TEST(FileNames, LeaveNoFolderControlCharacterOrReservedName) {
   EXPECT_EQ(file_name_from("com"), "com");
 }
 
+TEST(FileNames, AreUtf8WithoutWhatHidesThem) {
+  EXPECT_EQ(file_name_from("bad\xff\xfename"), "bad_name");
+  EXPECT_EQ(file_name_from("cut\xe2\x82"), "cut");
+  EXPECT_EQ(file_name_from("long\xc0\xafslash"), "long_slash");
+  EXPECT_EQ(file_name_from("surrogate\xed\xa0\x80x"), "surrogate_x");
+  EXPECT_EQ(file_name_from("a\xc2\x9b"
+                           "31m"),
+            "a_31m");
+  EXPECT_EQ(file_name_from("gpj\xe2\x80\xae.exe"), "gpj_.exe");
+  EXPECT_EQ(file_name_from("line\xe2\x80\xa8"
+                           "end"),
+            "line_end");
+  EXPECT_EQ(file_name_from("\xe6\x97\xa5\xe6\x9c\xac \xf0\x9f\x99\x82"),
+            "\xe6\x97\xa5\xe6\x9c\xac_\xf0\x9f\x99\x82");
+}
+
 TEST(FileNames, AreCutBetweenCharacters) {
   std::string umlauts = "a";
   for (int i = 0; i < 80; ++i) umlauts += "ä";

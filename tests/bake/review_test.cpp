@@ -205,6 +205,15 @@ TEST_F(Reviewed, NothingOfOthersIsLost) {
   EXPECT_NE(refusal().find("is not a folder of this program"), std::string::npos);
 }
 
+TEST_F(Reviewed, APageThatWasCutShortIsMadeAnew) {
+  review();
+  fs::remove(folder / "index.html");
+  fs::remove(folder / "review/reactions.js");
+  write("review/clips/half.js", "left by a run that was killed");
+  EXPECT_EQ(review().reactions, 2);
+  EXPECT_FALSE(fs::exists(folder / "review/clips/half.js"));
+}
+
 TEST_F(Reviewed, RefusesWhatIsNoBatch) {
   write("manifest.json", "[]");
   EXPECT_NE(refusal().find("is no JSON object"), std::string::npos);

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -61,9 +62,15 @@ pid_t Program::start(const std::vector<std::string>& arguments, const fs::path& 
 
 Ran Program::wait(pid_t child) {
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  rusage usage{};
+  while (wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
   }
   Ran result;
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  result.processor_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  result.memory_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   result.err = content_of(err_);
   if (out_ == folder.string() + ".out") {

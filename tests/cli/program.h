@@ -14,6 +14,8 @@ struct Ran {
   int status = -1;  // exit status; -1 where the program did not end by itself
   std::string out;
   std::string err;
+  double processor_s = 0.0;  // of the program and its children
+  double memory_mb = 0.0;    // the most at once
 };
 
 class Program : public testing::Test {

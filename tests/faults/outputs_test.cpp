@@ -1,5 +1,6 @@
 // The program on a full disk, without permission, killed, twice at once, and in odd surroundings.
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -51,6 +52,22 @@ class Surroundings : public Program {
     return bytes;
   }
 
+  /// The bytes of every file that the script puts into out, which is removed.
+  std::string digest_of_batch(const std::string& script) {
+    const Shell result = shell(script);
+    EXPECT_EQ(result.status, 0) << script << '\n' << result.err;
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "out"))
+      if (entry.is_regular_file() && entry.path().parent_path().filename() != ".ukemi")
+        names.push_back(fs::relative(entry.path(), folder).string());
+    std::sort(names.begin(), names.end());
+    EXPECT_EQ(names.size(), 4u * 3u + 2u) << script;
+    std::string bytes;
+    for (const std::string& name : names) bytes += name + '\n' + read(name);
+    fs::remove_all(folder / "out");
+    return bytes;
+  }
+
   static bool is_root() { return geteuid() == 0; }
 };
 
@@ -80,6 +97,55 @@ TEST_F(Surroundings, WhatIsNoFileIsRefusedBeforeAnythingRuns) {
     EXPECT_NE(result.err.find("cannot write"), std::string::npos) << result.err;
   }
   EXPECT_EQ(files(), (std::vector<std::string>{"folder.glb", "loop.glb", "pipe.glb"}));
+}
+
+TEST_F(Surroundings, ARunThatDivergesOnceIsThatOfTwiceTheRateAndSaysSo) {
+  const std::string bake =
+      "$UKEMI bake mannequin --hit hand_l --ball-mass 10 --ball-speed 60 --duration 0.4 ";
+  const Shell twice = shell(bake + "--quiet --rate fixed:120 -o twice.glb");
+  ASSERT_EQ(twice.status, 0) << twice.err;
+  const Shell once = shell(bake + "--rate fixed:60 -o once.glb --report once.json >/dev/null");
+  ASSERT_EQ(once.status, 0) << once.err;
+  EXPECT_NE(once.err.find("warning: hand_l: the simulation diverged at 0.000 s"), std::string::npos)
+      << once.err;
+  EXPECT_NE(once.err.find("it is run again at twice the rate"), std::string::npos) << once.err;
+  EXPECT_NE(read("once.json").find("it is run again at twice the rate"), std::string::npos);
+  EXPECT_EQ(read("once.glb"), read("twice.glb"));
+}
+
+TEST_F(Surroundings, EveryCommandLeavesNothingPartialOnAFullDisk) {
+  ASSERT_EQ(shell("$UKEMI bake mannequin --duration 0.1 --quiet -o one.glb").status, 0);
+  fs::create_directory(folder / "small");
+  if (mount("tmpfs", (folder / "small").c_str(), "tmpfs", 0, "size=8k") != 0)
+    GTEST_SKIP() << "a small disk needs the right to mount one";
+  write("small/old.png", "old");
+  const std::vector<std::string> commands = {
+      "bake mannequin --duration 0.1 -o small/a.bvh -o small/b.glb --sheet small/old.png --report "
+      "small/r.json",
+      "render mannequin --cells 1 -o small/old.png",
+      "render mannequin --cells 1 -o small/new.png",
+      "render mannequin --size thumbnail -o small/new.webp",
+      "rom -o small/old.png",
+      "compare mannequin --hits 1 --duration 0.2 --quiet -o small/compared"};
+  for (const std::string& command : commands) {
+    const Shell result = shell("$UKEMI " + command + " >/dev/null");
+    EXPECT_EQ(result.status, 4) << command << '\n' << result.err;
+    EXPECT_NE(result.err.find("cannot write: No space left on device\n  fix: "), std::string::npos)
+        << result.err;
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder / "small"), fs::directory_iterator()), 1)
+        << command;
+    EXPECT_EQ(read("small/old.png"), "old") << command;
+  }
+  EXPECT_EQ(mount("tmpfs", (folder / "small").c_str(), "tmpfs", MS_REMOUNT, "size=1200k"), 0);
+  fs::copy_file(folder / "one.glb", folder / "small/one.glb");
+  const Shell review = shell("$UKEMI review small >/dev/null");
+  EXPECT_EQ(review.status, 4) << review.err;
+  EXPECT_FALSE(fs::exists(folder / "small/index.html") || fs::exists(folder / "small/review"));
+  EXPECT_EQ(read("small/one.glb"), read("one.glb"));
+  EXPECT_EQ(mount("tmpfs", (folder / "small").c_str(), "tmpfs", MS_REMOUNT, "size=64m"), 0);
+  EXPECT_EQ(shell("$UKEMI review small >/dev/null").status, 0) << "the same once there is space";
+  EXPECT_TRUE(fs::exists(folder / "small/index.html"));
+  EXPECT_EQ(umount((folder / "small").c_str()), 0);
 }
 
 TEST_F(Surroundings, ALinkIsWrittenThrough) {
@@ -145,6 +211,31 @@ TEST_F(Surroundings, TheSameBytesWithoutHomeTerminalOrStreamsInAnyLocaleAndFolde
                   "a.bvh --sheet " + here + "a.png >/dev/null"),
             reference)
       << "from another folder";
+}
+
+TEST_F(Surroundings, ABatchIsTheSameInAnyLocaleFolderAndNumberOfWorkersWithoutHomeOrStreams) {
+  fs::create_directory(folder / "recipes");
+  write("recipes/r.toml",
+        "format = 1\ncharacters = [\"mannequin\"]\noutputs = [\"glb\", \"bvh\", \"sheet\"]\n[settings]\n"
+        "duration = 0.1\n[[matrix]]\nhit = [\"head\", \"chest\"]\nvariations = 2\njitter = { direction-deg = "
+        "10 }\n");
+  const std::string reference =
+      digest_of_batch("cd recipes; $UKEMI batch r.toml -o ../out -j 1 --no-review >/dev/null 2>&1");
+  const std::vector<std::string> ways = {
+      "$UKEMI batch recipes/r.toml -o out -j 2 --no-review </dev/null >/dev/null",
+      "env -i $UKEMI batch recipes/r.toml -o out -j 2 --no-review >/dev/null",
+      "LC_ALL=de_DE.UTF-8 LANG=tr_TR.UTF-8 $UKEMI batch recipes/r.toml -o out -j 2 --no-review >/dev/null",
+      "$UKEMI batch recipes/r.toml -o out -j 1 --no-review <&- >&- 2>&-",
+      "cd /; $UKEMI batch " + (folder / "recipes/r.toml").string() + " -o " + (folder / "out").string() +
+          " -j 2 --no-review >/dev/null"};
+  for (const std::string& way : ways) EXPECT_EQ(digest_of_batch(way), reference) << way;
+  if (!is_root()) return;
+  fs::permissions(folder, fs::perms::all);
+  fs::permissions(folder / "recipes", fs::perms::all);
+  const std::string as_nobody = "setpriv --reuid 65534 --regid 65534 --clear-groups ";
+  if (shell(as_nobody + "test -x \"$UKEMI\"").status == 0) {
+    EXPECT_EQ(digest_of_batch(as_nobody + ways[0]), reference) << "as another user";
+  }
 }
 
 TEST_F(Surroundings, TheSameBytesAsAnotherUser) {

@@ -19,11 +19,12 @@ using test::Json;
 class Loaded {
  public:
   explicit Loaded(const Document& d)
-      : document_(d.json.dump()), buffers_{d.binary}, accessors(document_.root(), buffers_) {}
+      : document_(d.json.dump()), buffers_{d.binary}, accessors(document_.root(), buffers_, budget_) {}
 
  private:
   JsonDocument document_;
   std::vector<Bytes> buffers_;
+  MemoryBudget budget_;
 
  public:
   Accessors accessors;
@@ -219,6 +220,24 @@ Document meshopt_document(const std::vector<float>& numbers) {
                                   {"mode", "ATTRIBUTES"}}}}}};
   d.accessor({{"bufferView", 0}, {"componentType", 5126}, {"count", numbers.size() / 3}, {"type", "VEC3"}});
   return d;
+}
+
+TEST(Accessors, PayForWhatTheyRead) {
+  Document d;
+  d.accessor({{"componentType", 5126}, {"count", 1000}, {"type", "VEC3"}});
+  const JsonDocument document(d.json.dump());
+  const std::vector<Bytes> buffers;
+  MemoryBudget budget;
+  budget.spend((std::size_t{4} << 30) - 2 * 12000, "the rest");
+  Accessors accessors(document.root(), buffers, budget);
+  accessors.floats(0, 3);
+  accessors.floats(0, 3);
+  try {
+    accessors.floats(0, 3);
+    FAIL() << "more than the budget";
+  } catch (const Refusal& r) {
+    EXPECT_EQ(r.message, "accessors[0]: with it the file's parts need more than 4 GiB of memory");
+  }
 }
 
 TEST(Accessors, DecodeMeshoptViews) {
