@@ -28,8 +28,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 class BatchWorker {
  public:
-  BatchWorker(const Recipe& recipe, const std::vector<Reaction>& reactions, fs::path folder)
-      : recipe_(recipe), reactions_(reactions), folder_(std::move(folder)) {}
+  BatchWorker(const Recipe& recipe, fs::path folder) : recipe_(recipe), folder_(std::move(folder)) {}
 
   ReactionRecord run(const Reaction& reaction, const std::string& digest, bool write) {
     const auto start = std::chrono::steady_clock::now();
@@ -107,7 +106,6 @@ class BatchWorker {
   }
 
   const Recipe& recipe_;
-  const std::vector<Reaction>& reactions_;
   fs::path folder_;
   std::list<Loaded> kept_;  // the last used first
 };
@@ -119,7 +117,7 @@ std::string batch_job(std::size_t reaction, const std::string& digest, bool writ
 }
 
 Work batch_work(const Recipe& recipe, const std::vector<Reaction>& reactions, fs::path folder) {
-  const auto worker = std::make_shared<BatchWorker>(recipe, reactions, std::move(folder));
+  const auto worker = std::make_shared<BatchWorker>(recipe, std::move(folder));
   return [worker, &reactions](const std::string& line) {
     const auto job = nlohmann::json::parse(line);
     const Reaction& reaction = reactions.at(job.at("reaction").get<std::size_t>());

@@ -382,7 +382,7 @@ class RecipeReader {
     std::set<OutputKind> kinds;
     for (const auto& [text, where] : texts_of(node, "outputs")) {
       const auto found = std::find_if(kOutputWords.begin(), kOutputWords.end(),
-                                      [&](const auto& output) { return output.first == text; });
+                                      [&wanted = text](const auto& output) { return output.first == wanted; });
       if (found == kOutputWords.end())
         fail(*where, fmt::format("unknown output '{}'", text), suggestion(text, words));
       kinds.insert(found->second);
