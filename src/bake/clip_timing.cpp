@@ -200,7 +200,7 @@ void add_lead(const Character& character, const BakeSettings& settings, BakeOutc
   const SegmentFrames segments = frames_of(character, outcome);
   std::vector<Pose> poses;
   for (int i = 0; i < frames; ++i)
-    poses.push_back(unhit_pose(character.skeleton, outcome.start, (i - frames) / clip.fps));
+    poses.push_back(unhit_pose(character.skeleton, outcome.humanoid, outcome.start, (i - frames) / clip.fps));
   for (int i = frames - 1; i >= 0; --i) {
     const Pose& next = i + 1 < frames ? poses[i + 1] : clip.frames.front();
     for (std::size_t n = 0; n < next.size(); ++n)
@@ -225,8 +225,9 @@ void add_recovery(const Character& character, const BakeSettings& settings, Bake
   const double duration_s = frames / clip.fps;
   const double cut_s = clip.duration_s() - outcome.impact_s;
   const auto unplaced = [&](double time_s) {
-    return settings.recover_to == RecoverTo::clip ? unhit_pose(skeleton, outcome.start, cut_s + time_s)
-                                                  : outcome.start.pose;
+    return settings.recover_to == RecoverTo::clip
+               ? unhit_pose(skeleton, humanoid, outcome.start, cut_s + time_s)
+               : outcome.start.pose;
   };
   const Pose last = clip.frames.back();
   const Pose before = clip.frames.size() > 1 ? clip.frames[clip.frames.size() - 2] : last;
@@ -255,7 +256,8 @@ void play_extra_bones(const Character& character, BakeOutcome& outcome) {
   for (const TwistBone& bone : outcome.humanoid.twist_bones) carries[bone.node] = true;
   Clip& clip = outcome.clip;
   for (std::size_t f = 1; f < clip.frames.size(); ++f) {
-    const Pose unhit = unhit_pose(skeleton, outcome.start, static_cast<double>(f) / clip.fps);
+    const Pose unhit =
+        unhit_pose(skeleton, outcome.humanoid, outcome.start, static_cast<double>(f) / clip.fps);
     for (int i = 0; i < skeleton.size(); ++i) {
       if (carries[i]) continue;
       clip.frames[f][i] = unhit[i];

@@ -8,6 +8,7 @@
 
 #include "bake/frames.h"
 #include "bake/impact.h"
+#include "bake/smooth.h"
 
 namespace ukemi {
 namespace {
@@ -17,6 +18,7 @@ using Json = nlohmann::ordered_json;
 // 99.9th percentile of the elbow, the joint where it is largest, over 30 clips of walking, running, fighting
 // and dancing at 30 to 120 Hz, low-passed at 12 Hz. No clip of them holds a blow.
 constexpr double kRealJerk_deg_s3 = 2.11e6;
+constexpr double kRealCutOff_hz = 12.0;
 
 template <typename T>
 Json or_null(const std::optional<T>& value) {
@@ -175,7 +177,16 @@ Json marks_json(const Clip& clip) {
   return json;
 }
 
-Json clip_json(const BakeSettings& settings, const BakeOutcome& outcome, const ReducedClip& reduced) {
+/// As the captured motion was filtered that kRealJerk_deg_s3 comes from.
+Json filtered_jerk_json(const Clip& clip) {
+  if (!(clip.fps > 2.0 * kRealCutOff_hz)) return nullptr;
+  Clip filtered = clip;
+  smooth(filtered, kRealCutOff_hz);
+  return largest_jerk(filtered).deg_s3;
+}
+
+Json clip_json(const Skeleton& skeleton, const BakeSettings& settings, const BakeOutcome& outcome,
+               const ReducedClip& reduced) {
   Json json;
   json["frames"] = outcome.clip.frames.size();
   json["resample_position_max_m"] = outcome.resample_error.position_single_bones_max_m;
@@ -184,7 +195,8 @@ Json clip_json(const BakeSettings& settings, const BakeOutcome& outcome, const R
   json["resample_rotation_max_deg"] = outcome.resample_error.rotation_max_deg;
   json["keys"] = reduced.keys;
   json["keys_error_max_m"] = reduced.error_m;
-  json["jerk_max_deg_s3"] = largest_jerk_deg_s3(outcome.clip);
+  const JerkPeak jerk = largest_jerk(outcome.clip);
+  json["jerk_max_deg_s3"] = jerk.deg_s3;
   json["outputs"] = Json::array();
   for (const auto& output : settings.outputs) json["outputs"].push_back(output.string());
   json["name"] = outcome.clip.name;
@@ -194,6 +206,9 @@ Json clip_json(const BakeSettings& settings, const BakeOutcome& outcome, const R
   json["additive"] = settings.additive;
   json["root_curve_m"] = nullptr;
   json["jerk_real_motion_p999_deg_s3"] = kRealJerk_deg_s3;
+  json["jerk_max_node"] = jerk.node < 0 ? Json(nullptr) : Json(skeleton.label(jerk.node));
+  json["jerk_max_time_s"] = jerk.node < 0 ? Json(nullptr) : Json(jerk.time_s);
+  json["jerk_below_12hz_max_deg_s3"] = filtered_jerk_json(outcome.clip);
   return json;
 }
 
@@ -224,7 +239,7 @@ std::string report_json(const std::string& character, const Character& loaded, c
   json["impact"] = impact_json(loaded, settings, outcome);
   json["limits"] = limits_json(outcome);
   json["simulation"] = simulation_json(outcome.simulation.figures);
-  json["clip"] = clip_json(settings, outcome, reduced);
+  json["clip"] = clip_json(loaded.skeleton, settings, outcome, reduced);
   if (!root_curve.empty()) json["clip"]["root_curve_m"] = root_curve_json(root_curve);
   json["timings_s"] = timings_json(outcome.timings_s, outcome.clip.duration_s());
   json["warnings"] = Json::array();
@@ -234,19 +249,20 @@ std::string report_json(const std::string& character, const Character& loaded, c
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-double largest_jerk_deg_s3(const Clip& clip) {
+JerkPeak largest_jerk(const Clip& clip) {
   const auto angular_velocity = [&](std::size_t frame, std::size_t node) -> Vec3 {
     const Quat& from = clip.frames[frame][node].rotation;
     return log_rotation(from.conjugate() * clip.frames[frame + 1][node].rotation) * clip.fps;
   };
-  double largest = 0.0;
+  JerkPeak peak;
   for (std::size_t f = 0; f + 3 < clip.frames.size(); ++f)
     for (std::size_t n = 0; n < clip.frames[f].size(); ++n) {
-      const Vec3 jerk =
-          (angular_velocity(f + 2, n) - 2.0 * angular_velocity(f + 1, n) + angular_velocity(f, n));
-      largest = std::max(largest, jerk.norm() * clip.fps * clip.fps);
+      const Vec3 change =
+          angular_velocity(f + 2, n) - 2.0 * angular_velocity(f + 1, n) + angular_velocity(f, n);
+      const double jerk = degrees(change.norm() * clip.fps * clip.fps);
+      if (jerk > peak.deg_s3) peak = {jerk, static_cast<int>(n), (static_cast<double>(f) + 1.5) / clip.fps};
     }
-  return degrees(largest);
+  return peak;
 }
 
 std::string_view name(RootMotion motion) {

@@ -18,8 +18,9 @@ namespace ukemi {
 /// starts from
 ///    has it. velocity_jump_m_s: difference of the pelvis's velocity over the first frame from that clip's,
 ///    the blow's share included. Both null for a still start.
-/// 3. clip.jerk_max_deg_s3 is the largest second difference of a node's local angular velocity between
-/// frames.
+/// 3. clip.jerk_max_deg_s3 is that of largest_jerk, at clip.jerk_max_time_s in clip.jerk_max_node;
+/// clip.jerk_below_12hz_max_deg_s3 the same of the clip low-passed as the captured motion was that
+/// clip.jerk_real_motion_p999_deg_s3 comes from (null at 24 frames per second and fewer).
 /// 4. Times of impact and clip.marks are in the clip (the lead counts), those of simulation after the impact.
 /// 5. clip.root_curve_m: [x, z] of the pelvis since the first frame, one per frame, world metres; null with
 /// the motion on the hips.
@@ -28,8 +29,15 @@ std::string report_json(const std::string& character, const Character& loaded, c
                         const BakeOutcome& outcome, const ReducedClip& reduced,
                         const Diagnostics& diagnostics, const std::vector<Vec3>& root_curve = {});
 
-/// Largest jerk of any node's local rotation, degrees / s^3; 0 for clips of fewer than four frames.
-double largest_jerk_deg_s3(const Clip& clip);
+/// Second difference of a node's local angular velocity between frames.
+struct JerkPeak {
+  double deg_s3 = 0.0;
+  int node = -1;
+  double time_s = 0.0;  // amid the four frames it is taken from
+};
+
+/// The largest jerk of any node; none for clips of fewer than four frames.
+JerkPeak largest_jerk(const Clip& clip);
 
 /// "hips", "root", "in-place".
 std::string_view name(RootMotion motion);

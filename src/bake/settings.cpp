@@ -392,7 +392,8 @@ Settings clip_settings() {
           [](auto& s) -> auto& { return s.simulation.fps; }),
       number<S>(
           "lead", "S", Range{0.0, 60.0},
-          "start of the clip before the impact: the start clip, or the pose held",
+          "start of the clip before the impact: the start clip (round and round where it is a cycle), or the "
+          "pose held",
           [](auto& s) -> auto& { return s.lead_s; }),
       with_unset(number<S>(
                      "recover", "S", Range{0.0, 60.0, true},
@@ -401,7 +402,7 @@ Settings clip_settings() {
                  "none"),
       choice<S, RecoverTo>(
           "to", {{"rest", RecoverTo::rest}, {"clip", RecoverTo::clip}},
-          "recover: to the start pose, or to what the start clip plays by then",
+          "recover: to the start pose, or to what the start clip, a cycle round and round, plays by then",
           [](auto& s) -> auto& { return s.recover_to; }),
       choice<S, RootMotion>(
           "root-motion",

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "bake/bake.h"
+#include "bake/ground_motion.h"
 #include "bake/motion.h"
 #include "base/errors.h"
 #include "base/nearest.h"
@@ -21,6 +23,10 @@ constexpr double kFastestTurn = 60.0;          // rad/s
 constexpr double kFloorRate = 30.0;            // samples per second of a clip
 constexpr int kMaxFloorSamples = 600;
 constexpr double kFloorQuantile = 0.05;  // a calibration pose or a slipped frame may lie deeper
+const double kRoundTurn = radians(1.5);  // between the first and the last pose of a cycle
+constexpr double kRoundShift = 0.005;    // of the body height
+constexpr double kShortestRound = 0.2;   // s
+constexpr double kStillSpeed = 0.02;     // m/s
 
 Result<Pose> still_pose(const Character& character, const Humanoid& humanoid, const std::string& text,
                         Diagnostics& diagnostics) {
@@ -112,6 +118,36 @@ Result<std::optional<Animation>> motion_of(const Character& character, const Hum
   return motion;
 }
 
+/// Whether some segment is under way between two times, up to a hundredth of a second apart.
+bool moves(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& motion, double from_s,
+           double to_s) {
+  const BodyPose a = segments_of(skeleton, humanoid, sample(skeleton, motion, from_s));
+  const BodyPose b = segments_of(skeleton, humanoid, sample(skeleton, motion, to_s));
+  for (int s = 0; s < kSegmentCount; ++s)
+    if ((b[s].translation - a[s].translation).norm() > kStillSpeed * (to_s - from_s)) return true;
+  return false;
+}
+
+/// See Start::round. A motion that comes to rest where it began (a blow out of a guard) is no round.
+std::optional<Rigid> round_of(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& motion) {
+  if (motion.duration_s() < kShortestRound) return std::nullopt;
+  const double step_s = 2.0 * kVelocityStep;
+  if (!moves(skeleton, humanoid, motion, motion.start_s, motion.start_s + step_s) ||
+      !moves(skeleton, humanoid, motion, motion.end_s - step_s, motion.end_s))
+    return std::nullopt;
+  const BodyPose first = segments_of(skeleton, humanoid, sample(skeleton, motion, motion.start_s));
+  const BodyPose last = segments_of(skeleton, humanoid, sample(skeleton, motion, motion.end_s));
+  constexpr int pelvis = index(Segment::pelvis);
+  const GroundMove move = ground_move({first[pelvis]}, {last[pelvis]});
+  for (int s = 0; s < kSegmentCount; ++s) {
+    const Rigid expected = move * first[s];
+    if (angle_between(expected.rotation, last[s].rotation) > kRoundTurn ||
+        (expected.translation - last[s].translation).norm() > kRoundShift * humanoid.height_m)
+      return std::nullopt;
+  }
+  return move * Rigid{};
+}
+
 Result<Start> start_from_motion(const Character& character, const Humanoid& humanoid, Animation motion,
                                 double at_s, Diagnostics& diagnostics) {
   if (!(at_s >= 0.0) || at_s > motion.duration_s() + 1e-6)
@@ -126,6 +162,7 @@ Result<Start> start_from_motion(const Character& character, const Humanoid& huma
   const double floor_m = floor_of(character, humanoid, poses);
   start.floor_m = std::min(floor_m, height_above_floor(character, humanoid, start.pose));
   find_velocities(character.skeleton, humanoid, motion, motion.start_s + at_s, start.state, diagnostics);
+  start.round = round_of(character.skeleton, humanoid, motion);
   start.motion = std::move(motion);
   return start;
 }
@@ -189,9 +226,21 @@ Result<Start> start_of(const Character& character, const Humanoid& humanoid, con
   return start;
 }
 
-Pose unhit_pose(const Skeleton& skeleton, const Start& start, double time_s) {
+Pose unhit_pose(const Skeleton& skeleton, const Humanoid& humanoid, const Start& start, double time_s) {
   if (!start.motion || time_s == 0.0) return start.pose;
-  return sample(skeleton, *start.motion, start.motion->start_s + start.at_s + time_s);
+  const double at_s = start.at_s + time_s;
+  const double duration_s = start.motion->duration_s();
+  if (!start.round || (at_s >= 0.0 && at_s <= duration_s))
+    return sample(skeleton, *start.motion, start.motion->start_s + at_s);
+  const double rounds = std::floor(at_s / duration_s);
+  const Pose pose = sample(skeleton, *start.motion, start.motion->start_s + at_s - rounds * duration_s);
+  const Rigid step = rounds < 0.0 ? start.round->inverse() : *start.round;
+  Rigid way;
+  for (int i = 0; i < static_cast<int>(std::abs(rounds)); ++i) way = step * way;
+  const BodyPose before = segments_of(skeleton, humanoid, pose);
+  BodyPose after = before;
+  for (Rigid& segment : after) segment = way * segment;
+  return pose_skeleton(skeleton, humanoid, pose, before, after);
 }
 
 double velocity_jump(const Skeleton& skeleton, const Humanoid& humanoid, const Start& start) {

@@ -153,9 +153,13 @@ TEST(Report, JerkOfACubicAngleIsItsConstant) {
     local.rotation = exp_rotation(Vec3(0, c * t * t * t / 6.0, 0));
     clip.frames.push_back({local});
   }
-  EXPECT_NEAR(largest_jerk_deg_s3(clip), degrees(c), 1e-6);
+  EXPECT_NEAR(largest_jerk(clip).deg_s3, degrees(c), 1e-6);
+  clip.frames[7][0].rotation = exp_rotation(Vec3(0.1, 0, 0)) * clip.frames[7][0].rotation;
+  EXPECT_EQ(largest_jerk(clip).node, 0);
+  EXPECT_NEAR(largest_jerk(clip).time_s, 7 / clip.fps, 1 / clip.fps);
   clip.frames.resize(3);
-  EXPECT_EQ(largest_jerk_deg_s3(clip), 0.0);
+  EXPECT_EQ(largest_jerk(clip).deg_s3, 0.0);
+  EXPECT_EQ(largest_jerk(clip).node, -1);
 }
 
 TEST(Report, WordsForTheMethodAreThoseOfTheCommandLine) {

@@ -82,7 +82,8 @@ TEST_F(Bake, ReportHasEveryKeyOfItsFormat) {
               {"steps", "rejected_steps", "joint_separation_max_m", "energy_gain_max_j",
                "floor_penetration_max_m", "self_penetration_max_m", "rest_time_s", "jitter_rad_s", "hash"});
   expect_keys(report["clip"], {"frames", "resample_position_max_m", "resample_rotation_max_deg", "keys",
-                               "keys_error_max_m", "jerk_max_deg_s3", "outputs"});
+                               "keys_error_max_m", "jerk_max_deg_s3", "jerk_max_node", "jerk_max_time_s",
+                               "jerk_below_12hz_max_deg_s3", "jerk_real_motion_p999_deg_s3", "outputs"});
   expect_keys(report["timings_s"],
               {"load", "simulate", "resample", "export", "render", "total", "realtime_factor"});
   EXPECT_TRUE(files().empty());
