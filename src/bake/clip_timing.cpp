@@ -86,6 +86,13 @@ double lowest(const BodyPose& frame, const Skin& skin) {
 /// 0 to 1 with still ends: no velocity, no acceleration.
 double smooth_step(double x) { return x * x * x * (10.0 + x * (6.0 * x - 15.0)); }
 
+/// Time of a motion that stands still at 0 and runs as it should from `duration_s` on, which it reaches in
+/// time.
+double gathered(double time_s, double duration_s) {
+  const double x = std::clamp(time_s / duration_s, 0.0, 1.0);
+  return duration_s * (0.5 + x * x * x * x * (2.5 + x * (x - 3.0)));  // 0.5 + integral of smooth_step
+}
+
 /// Where an offset with a velocity is, on its way to nothing (after Bollo, "Inertialization", GDC 2018).
 struct Fading {
   Vec3 offset = Vec3::Zero();
@@ -129,13 +136,16 @@ class Blend {
   std::vector<Fading> turn_, shift_;
 };
 
-/// The move that puts the target where the figure is.
-GroundMove place_for(const BodyPose& target, const BodyPose& figure, double floor_m) {
+bool is_down(const BodyPose& figure, const BodyPose& target, double floor_m) {
   const auto height = [&](const BodyPose& pose) {
     return pose[index(Segment::pelvis)].translation.y() - floor_m;
   };
-  if (height(figure) < kUpright * height(target))
-    return ground_move({target[index(Segment::pelvis)]}, {figure[index(Segment::pelvis)]});
+  return height(figure) < kUpright * height(target);
+}
+
+/// The move that puts the target where the figure is.
+GroundMove place_for(const BodyPose& target, const BodyPose& figure, bool down) {
+  if (down) return ground_move({target[index(Segment::pelvis)]}, {figure[index(Segment::pelvis)]});
   const int l = index(Segment::foot_l), r = index(Segment::foot_r);
   return ground_move({target[l], target[r]}, {figure[l], figure[r]});
 }
@@ -224,15 +234,18 @@ void add_recovery(const Character& character, const BakeSettings& settings, Bake
   if (frames <= 0 || clip.frames.empty()) return;
   const double duration_s = frames / clip.fps;
   const double cut_s = clip.duration_s() - outcome.impact_s;
-  const auto unplaced = [&](double time_s) {
-    return settings.recover_to == RecoverTo::clip
-               ? unhit_pose(skeleton, humanoid, outcome.start, cut_s + time_s)
-               : outcome.start.pose;
-  };
   const Pose last = clip.frames.back();
   const Pose before = clip.frames.size() > 1 ? clip.frames[clip.frames.size() - 2] : last;
-  const GroundMove place = place_for(segments_of(skeleton, humanoid, unplaced(0.0)),
-                                     segments_of(skeleton, humanoid, last), outcome.start.floor_m);
+  const BodyPose figure = segments_of(skeleton, humanoid, last);
+  const bool down =
+      is_down(figure, segments_of(skeleton, humanoid, outcome.start.pose), outcome.start.floor_m);
+  // Who lies does not walk on: the clip gathers way while he gets up.
+  const auto unplaced = [&](double time_s) {
+    if (settings.recover_to != RecoverTo::clip) return outcome.start.pose;
+    return unhit_pose(skeleton, humanoid, outcome.start,
+                      cut_s + (down ? gathered(time_s, duration_s) : time_s));
+  };
+  const GroundMove place = place_for(segments_of(skeleton, humanoid, unplaced(0.0)), figure, down);
   const auto target = [&](double time_s) { return place.moved(skeleton, humanoid, unplaced(time_s)); };
   const Blend blend(before, last, target(-1.0 / clip.fps), target(0.0), clip.fps);
   std::vector<Pose> poses{last};

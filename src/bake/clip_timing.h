@@ -14,7 +14,8 @@ int frames_in(double seconds, double fps);
 void add_lead(const Character& character, const BakeSettings& settings, BakeOutcome& outcome);
 
 /// Blends from the last frame, with its velocities, to what settings.recover_to names, in settings.recover_s.
-/// The figure recovers where it is: who stands keeps his feet, who lies gets up towards his feet or head.
+/// The figure recovers where it is: who stands keeps his feet, who lies gets up towards his feet or head, and
+/// the clip he goes back to gathers way meanwhile; at the end it is where it would be without the blow.
 /// The lowest skin point goes evenly from its height to that of the pose or clip, so that nothing sinks into
 /// the floor or floats.
 void add_recovery(const Character& character, const BakeSettings& settings, BakeOutcome& outcome);

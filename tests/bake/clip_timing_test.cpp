@@ -119,6 +119,32 @@ TEST(Recovery, OfWhoLiesGetsUpWhereHeIsAndStaysAboveTheFloor) {
   for (std::size_t f = cut; f < frames.size(); ++f) EXPECT_GT(lowest_joint_m(outcome, frames[f]), -0.01) << f;
 }
 
+TEST(Recovery, OfWhoLiesToAWalkDoesNotWalkBeforeHeStands) {
+  BakeSettings settings;
+  settings.clip = "walk";
+  settings.at_s = 0.5;
+  settings.from = "back";
+  settings.recover_s = 1.5;
+  settings.recover_to = RecoverTo::clip;
+  const BakeOutcome outcome = baked(settings);
+  const auto& frames = outcome.clip.frames;
+  const Skeleton& skeleton = mannequin().skeleton;
+  const std::size_t cut = frames.size() - 1 - 90;
+  for (std::size_t f = cut; f < cut + 12; ++f) {
+    const Vec3 shift = pelvis_at(outcome, skeleton, frames[f]) - pelvis_at(outcome, skeleton, frames[cut]);
+    EXPECT_LT(Vec2(shift.x(), shift.z()).norm(), 0.03) << f << ": slides";
+    EXPECT_LT(largest_turn_deg(frames[f], frames[f + 1]), 2.0) << f;
+  }
+  const Pose unhit = unhit_pose(skeleton, outcome.humanoid, outcome.start, outcome.clip.duration_s());
+  for (int i = 0; i < skeleton.size(); ++i) {
+    if (i == outcome.humanoid.root) continue;
+    EXPECT_LT(degrees(angle_between(frames.back()[i].rotation, unhit[i].rotation)), 1e-6) << "the same phase";
+  }
+  const Vec3 step =
+      pelvis_at(outcome, skeleton, frames.back()) - pelvis_at(outcome, skeleton, frames[frames.size() - 2]);
+  EXPECT_NEAR(60.0 * Vec2(step.x(), step.z()).norm(), 1.25, 0.2) << "walks on, m/s";
+}
+
 TEST(Recovery, ToAClipNeedsOne) {
   BakeSettings settings = flinch();
   settings.recover_s = 0.5;
