@@ -1,6 +1,8 @@
 // Standing poses, built as segment rotations on the figure of the reference pose.
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <optional>
 
 #include "humanoid/figure.h"
 #include "humanoid/humanoid.h"
@@ -202,30 +204,26 @@ Pose rest_on_feet(const Character& character, const Humanoid& humanoid) {
 
 namespace {
 
-/// The trunk's skin beside the arms of a standing body.
-class Trunk {
+/// Skin of a standing body that its arms shall not reach into.
+class Surface {
  public:
-  Trunk(const Character& character, const Humanoid& humanoid, const Pose& standing) : humanoid_(humanoid) {
+  Surface(const Character& character, const Humanoid& humanoid, const BodyPose& from, const BodyPose& body,
+          bool (*counts)(Segment))
+      : band_m_(kBand * humanoid.height_m) {
+    const Pose pose = pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, body);
     const std::vector<Segment> segments = segments_of_nodes(character.skeleton, humanoid);
-    const auto counts = [&](int node) {
-      const Segment s = segments[node];
-      return s == Segment::pelvis || s == Segment::abdomen || s == Segment::chest || is_thigh(s);
-    };
     const Similarity& world = humanoid.world_from_file;
     const double spacing = kSpacing * humanoid.height_m / world.scale;
-    for (const Vec3& point :
-         surface_points(character, world_transforms(character.skeleton, standing), spacing, counts))
+    for (const Vec3& point : surface_points(character, world_transforms(character.skeleton, pose), spacing,
+                                            [&](int node) { return counts(segments[node]); }))
       points_.push_back(world * point);
   }
 
-  /// How far the axis of an arm is outside the skin at its height, at least, metres: from the elbow to the
-  /// wrist. Large where there is no skin.
-  double clearance(const BodyPose& body, bool left) const {
-    const auto place = [&](Segment s) { return body[index(on_side(s, left))].translation; };
-    const Vec3 elbow = place(Segment::forearm_l), wrist = place(Segment::hand_l);
-    const Vec3 outwards = body[index(Segment::pelvis)].rotation * Vec3(0, 0, left ? -1 : 1);
+  /// How far the least of the places lies outside the skin beside it, in a direction (unit), metres. Large
+  /// where there is no skin.
+  double clearance(std::initializer_list<Vec3> places, const Vec3& outwards) const {
     double least = 1e300;
-    for (const Vec3& at : {elbow, Vec3(0.5 * (elbow + wrist)), wrist}) {
+    for (const Vec3& at : places) {
       const double reach = farthest(at, outwards);
       if (reach > -1e299) least = std::min(least, at.dot(outwards) - reach);
     }
@@ -234,41 +232,80 @@ class Trunk {
 
  private:
   static constexpr double kSpacing = 0.02;  // of the height
-  static constexpr double kBand = 0.03;     // of the height, up and down, forwards and backwards
-
-  static bool is_thigh(Segment s) { return s == Segment::thigh_l || s == Segment::thigh_r; }
+  static constexpr double kBand = 0.03;     // of the height, to all sides of the direction
 
   double farthest(const Vec3& at, const Vec3& outwards) const {
     double reach = -1e300;
     for (const Vec3& point : points_) {
       const Vec3 apart = point - at;
       const double beside = (apart - apart.dot(outwards) * outwards).cwiseAbs().maxCoeff();
-      if (beside < kBand * humanoid_.height_m) reach = std::max(reach, point.dot(outwards));
+      if (beside < band_m_) reach = std::max(reach, point.dot(outwards));
     }
     return reach;
   }
 
-  const Humanoid& humanoid_;
+  double band_m_;
   std::vector<Vec3> points_;
 };
 
+bool is_trunk(Segment s) { return s == Segment::pelvis || s == Segment::abdomen || s == Segment::chest; }
+
+/// The stance with its arms changed in at most `steps` equal steps until their clearance (metres) is ample;
+/// as it is where it is clear. Nothing where no step helps.
+template <typename Clearance, typename Change>
+std::optional<BodyPose> held_away(Stance stance, const BodyPose& from, double height_m, int steps,
+                                  const Clearance& clearance, const Change& change) {
+  constexpr double kAmple = 0.015;  // of the height
+  BodyPose body = body_in(stance, from);
+  if (clearance(body) > 0.0) return body;
+  for (int step = 0; step < steps; ++step) {
+    change(stance.arm_l);
+    change(stance.arm_r);
+    body = body_in(stance, from);
+    if (clearance(body) > kAmple * height_m) return body;
+  }
+  return std::nullopt;
+}
+
 /// Standing with hanging arms, held away from a trunk that they would hang into where that helps.
 BodyPose stand(const Character& character, const Humanoid& humanoid, const BodyPose& from) {
-  constexpr double kStep_deg = 4.0, kMost_deg = 50.0;
-  Stance stance = kStand;
-  BodyPose body = body_in(stance, from);
-  const Trunk trunk(character, humanoid,
-                    pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, body));
-  const auto clearance = [&] { return std::min(trunk.clearance(body, true), trunk.clearance(body, false)); };
-  if (clearance() > 0.0) return body;
-  const BodyPose hanging = body;
-  while (stance.arm_l.abduction < kMost_deg) {
-    stance.arm_l.abduction += kStep_deg;
-    stance.arm_r.abduction += kStep_deg;
-    body = body_in(stance, from);
-    if (clearance() > 0.015 * humanoid.height_m) return body;
-  }
-  return hanging;
+  const Surface trunk(character, humanoid, from, body_in(kStand, from), [](Segment s) {
+    return is_trunk(s) || s == Segment::thigh_l || s == Segment::thigh_r;
+  });
+  const auto clearance = [&](const BodyPose& body) {
+    double least = 1e300;
+    for (const bool left : {true, false}) {
+      const auto place = [&](Segment s) { return body[index(on_side(s, left))].translation; };
+      const Vec3 elbow = place(Segment::forearm_l), wrist = place(Segment::hand_l);
+      const Vec3 outwards = body[index(Segment::pelvis)].rotation * Vec3(0, 0, left ? -1 : 1);
+      least = std::min(least, trunk.clearance({elbow, Vec3(0.5 * (elbow + wrist)), wrist}, outwards));
+    }
+    return least;
+  };
+  const auto apart = [](ArmAngles& arm) { arm.abduction += 4.0; };
+  return held_away(kStand, from, humanoid.height_m, 11, clearance, apart).value_or(body_in(kStand, from));
+}
+
+/// A guard; fists that would be in a large head are held before it or, where arms are too short for that,
+/// below it.
+BodyPose guard(const Character& character, const Humanoid& humanoid, const BodyPose& from) {
+  constexpr double kFist = 0.05;  // from wrist to fist, of the height
+  const Surface front(character, humanoid, from, body_in(kGuard, from),
+                      [](Segment s) { return is_trunk(s) || s == Segment::head; });
+  const auto clearance = [&](const BodyPose& body) {
+    const Vec3 ahead = heading_of(from[index(Segment::pelvis)].rotation) * Vec3::UnitX();
+    double least = 1e300;
+    for (const Segment s : {Segment::hand_l, Segment::hand_r}) {
+      const Rigid& hand = body[index(s)];
+      least = std::min(
+          least, front.clearance({hand.translation, hand * Vec3(0, -kFist * humanoid.height_m, 0)}, ahead));
+    }
+    return least;
+  };
+  const auto forwards = [](ArmAngles& arm) { arm.elbow_flexion -= 5.0, arm.flexion += 3.0; };
+  if (const auto body = held_away(kGuard, from, humanoid.height_m, 14, clearance, forwards)) return *body;
+  const auto lower = [](ArmAngles& arm) { arm.elbow_flexion -= 4.0, arm.flexion -= 4.0; };
+  return held_away(kGuard, from, humanoid.height_m, 12, clearance, lower).value_or(body_in(kGuard, from));
 }
 
 }  // namespace
@@ -276,7 +313,8 @@ BodyPose stand(const Character& character, const Humanoid& humanoid, const BodyP
 Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose kind) {
   if (kind == StartPose::rest) return stand_on_floor(character, humanoid, rest_on_feet(character, humanoid));
   const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
-  const BodyPose to = kind == StartPose::stand ? stand(character, humanoid, from) : body_in(kGuard, from);
+  const BodyPose to =
+      kind == StartPose::stand ? stand(character, humanoid, from) : guard(character, humanoid, from);
   return stand_on_floor(character, humanoid,
                         pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, to));
 }

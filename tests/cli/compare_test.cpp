@@ -24,6 +24,11 @@ TEST_F(Compare, PrintsTheFiguresOfEveryMethodAsJson) {
                             "excess_max_deg", "worst_joint", "joint_separation_max_m", "energy_gain_max_j",
                             "exploded", "angular_momentum_mean_kg_m2_s", "airborne_mean_s", "us_per_step"})
       EXPECT_TRUE(method.contains(key)) << key;
+  for (const Json& method : json["methods"]) {
+    EXPECT_GE(method["samples"], 17 * 0.3 * 60) << method["method"];
+    EXPECT_GT(method["us_per_step"], 0.0) << method["method"];
+    EXPECT_GT(method["angular_momentum_mean_kg_m2_s"], 0.0) << method["method"];
+  }
   EXPECT_TRUE(files().empty());
 }
 
@@ -35,6 +40,26 @@ TEST_F(Compare, WritesTableJsonAndPicturesIntoItsFolder) {
   EXPECT_EQ(Json::parse(read("out/compare.json"))["seed"], 1);
   for (const char* name : {"compare", "hit", "a", "b", "c", "ours", "unnatural", "slope", "fall"})
     EXPECT_TRUE(read(std::string("out/") + name + ".png").starts_with("\x89PNG")) << name;
+}
+
+TEST_F(Compare, TakesTheRegionTheSeedAndTheTimeItIsTold) {
+  const auto figures = [this](std::vector<std::string> more) {
+    more.insert(more.begin(), {"compare", "mannequin", "--hits", "1", "--json"});
+    const Ran ran = run(more);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    Json json = Json::parse(ran.out);
+    for (Json& method : json["methods"])
+      for (const char* time : {"us_per_step", "cpu_s_per_s"}) method.erase(time);
+    return json;
+  };
+  const Json plain = figures({"--duration", "0.2"});
+  EXPECT_EQ(figures({"--duration", "0.2"}), plain);
+  EXPECT_GT(figures({"--duration", "0.4"})["methods"][0]["samples"],
+            1.5 * plain["methods"][0]["samples"].get<double>());
+  EXPECT_NE(figures({"--duration", "0.2", "--seed", "2"})["methods"], plain["methods"]);
+  const Json box = figures({"--duration", "0.2", "--region", "box"});
+  EXPECT_EQ(box["region"], "box");
+  EXPECT_NE(box["methods"], plain["methods"]);
 }
 
 TEST_F(Compare, RefusesWhatMakesNoExperiment) {

@@ -30,6 +30,52 @@ TEST_F(Render, MakesSheetsMovingPicturesAndSequences) {
   EXPECT_NE(std::find(found.begin(), found.end(), "turn_02.png"), found.end());
 }
 
+TEST_F(Render, EveryOptionChangesThePicture) {
+  const std::vector<std::string> plain = {"render", "mannequin", "--clip", "walk", "--cells", "2"};
+  const auto picture = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = plain;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), {"-o", "a.png"});
+    succeed(arguments);
+    return read("a.png");
+  };
+  const std::string without = picture({});
+  EXPECT_EQ(picture({}), without);
+  for (const std::vector<std::string>& option : std::vector<std::vector<std::string>>{{"--theme", "dark"},
+                                                                                      {"--view", "back"},
+                                                                                      {"--size", "400x500"},
+                                                                                      {"--shapes"},
+                                                                                      {"--axes"},
+                                                                                      {"--rom"},
+                                                                                      {"--trail"},
+                                                                                      {"--columns", "1"},
+                                                                                      {"--height", "1.2"}})
+    EXPECT_NE(picture(option), without) << option.front();
+  EXPECT_NE(picture({"--rom"}), picture({"--rom", "--region", "box"}));
+}
+
+TEST_F(Render, AMovingPictureTakesTheClipsTimeAtItsSpeed) {
+  /// Time of all frames of an animated WebP, seconds: each ANMF chunk holds its own as 24 bits of
+  /// milliseconds.
+  const auto duration_s = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"render", "mannequin", "--clip", "walk",
+                                          "--size", "64x64",     "-o",     "a.webp"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    succeed(arguments);
+    const std::string bytes = read("a.webp");
+    double sum = 0.0;
+    for (auto at = bytes.find("ANMF"); at != bytes.npos; at = bytes.find("ANMF", at + 4))
+      for (int i = 0; i < 3; ++i)
+        sum += static_cast<unsigned char>(bytes[at + 20 + static_cast<std::size_t>(i)]) * (1 << (8 * i)) /
+               1000.0;
+    return sum;
+  };
+  const double normal = duration_s({"--fps", "10"});
+  EXPECT_GT(normal, 0.5);
+  EXPECT_NEAR(duration_s({"--fps", "10", "--speed", "0.5"}), 2.0 * normal, 0.21);
+  EXPECT_NEAR(duration_s({"--fps", "20"}), normal, 0.11);
+}
+
 TEST_F(Render, PutsSeveralClipsIntoRows) {
   succeed(
       {"bake", "mannequin", "--duration", "0.3", "-o", "a.glb", "--preview", "a.webp", "--theme", "dark"});

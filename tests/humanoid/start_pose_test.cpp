@@ -161,6 +161,52 @@ void add_skin(Character& character) {
   character.parts.push_back(part);
 }
 
+/// A head that is a cube of that half edge, from 10 cm below the head joint upwards, of many small triangles.
+void add_cubic_head(Character& character, double half_edge) {
+  constexpr std::uint32_t kSquares = 20;  // along an edge
+  const int head = character.skeleton.find("mixamorig:Head");
+  const Affine world = world_transforms(character.skeleton, rest_pose(character.skeleton))[head];
+  character.skins.push_back({{head}, {world.inverse()}});
+  const Vec3 centre = world.translation() + Vec3(0, half_edge - 0.1, 0);
+  MeshPart part;
+  part.node = 0;
+  part.skin = 0;
+  for (int face = 0; face < 6; ++face) {
+    const auto first = static_cast<std::uint32_t>(part.positions.size());
+    for (std::uint32_t i = 0; i <= kSquares; ++i)
+      for (std::uint32_t j = 0; j <= kSquares; ++j) {
+        Vec3 at = Vec3::Constant(face < 3 ? 1.0 : -1.0);
+        at[(face + 1) % 3] = 2.0 * i / kSquares - 1.0;
+        at[(face + 2) % 3] = 2.0 * j / kSquares - 1.0;
+        part.positions.push_back((centre + half_edge * at).cast<float>());
+        part.joints.push_back({0, 0, 0, 0});
+        part.weights.push_back({1, 0, 0, 0});
+      }
+    for (std::uint32_t i = 0; i < kSquares; ++i)
+      for (std::uint32_t j = 0; j < kSquares; ++j) {
+        const std::uint32_t corner = first + i * (kSquares + 1) + j, next = corner + kSquares + 1;
+        for (const std::uint32_t index : {corner, next, corner + 1, next, next + 1, corner + 1})
+          part.indices.push_back(index);
+      }
+  }
+  character.parts.push_back(part);
+}
+
+TEST(StartPose, GuardHoldsTheFistsOutOfALargeHead) {
+  for (const double half_edge : {0.1, 0.25, 0.3, 0.8}) {
+    Character character = figure();
+    add_cubic_head(character, half_edge);
+    const Standing guard(character, StartPose::guard);
+    const Rigid& head = guard.at(Segment::head);
+    for (const Segment segment : {Segment::hand_l, Segment::hand_r}) {
+      const Rigid& hand = guard.at(segment);
+      const Vec3 fist = head.inverse() * (hand * Vec3(0, -0.08, 0));  // x forwards, y up from the head joint
+      EXPECT_TRUE(fist.x() > half_edge || fist.y() < -0.1)
+          << half_edge << ": " << name(segment) << " " << fist.transpose();
+    }
+  }
+}
+
 TEST(StartPose, TheLowestSolePointOfTheSkinStandsOnTheFloor) {
   for (const StartPose kind : {StartPose::rest, StartPose::stand, StartPose::guard}) {
     Character character = figure();
