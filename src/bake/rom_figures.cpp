@@ -4,6 +4,7 @@
 
 #include "bake/inspect.h"
 #include "bake/start.h"
+#include "humanoid/rotations.h"
 
 namespace ukemi {
 namespace {
@@ -21,11 +22,9 @@ Rotations stored_rotations(const Skeleton& skeleton, const SegmentFrames& frames
 
 Rotations canonical_rotations(const Skeleton& skeleton, const Humanoid& humanoid,
                               const std::vector<Pose>& poses) {
-  Rotations result(poses.size());
-  for (std::size_t f = 0; f < poses.size(); ++f) {
-    const BodyPose segments = canonical_segments_of(skeleton, humanoid, poses[f]);
-    for (int i = 0; i < kSegmentCount; ++i) result[f][i] = segments[i].rotation;
-  }
+  Rotations result;
+  for (const Pose& pose : poses)
+    result.push_back(rotations_of(canonical_segments_of(skeleton, humanoid, pose)));
   return result;
 }
 

@@ -290,6 +290,16 @@ TEST(Additive, DeltasOnTopOfTheStartAreTheClip) {
   }
 }
 
+TEST(Additive, OfAScaleIsTheRatio) {
+  ReducedClip clip;
+  clip.tracks.push_back({0, TrackPath::scale, Interpolation::linear, {0.0, 1.0}, {2, 4, 5, 3, 4, 5}});
+  Pose start(1);
+  start[0].scale = Vec3(2, 4, 5);
+  const ReducedClip delta = additive(clip, start);
+  ASSERT_EQ(delta.tracks.size(), 1u);
+  EXPECT_EQ(delta.tracks[0].values, (std::vector<double>{1, 1, 1, 1.5, 1, 1}));
+}
+
 /// One node that swings, slow or fast.
 Clip swinging(double hz) {
   Clip clip{"swing", 60.0, {}, {}};

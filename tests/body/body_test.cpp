@@ -17,7 +17,12 @@ TEST(Anthropometry, MassFractionsSumToTheWholeBody) {
     for (int s = 0; s < kSegmentCount; ++s) sum += segment_table(segment_at(s), sex).mass_fraction;
     EXPECT_NEAR(sum, 1.0, 2e-4) << "the female column of the source sums to 0.9999";
   }
+}
+
+TEST(Anthropometry, MassesOfBothSexesGrowWithTheCubeOfTheHeight) {
   EXPECT_NEAR(default_mass_kg(1.741, Sex::male), 73.0, 1e-12);
+  EXPECT_NEAR(default_mass_kg(1.735, Sex::female), 61.9, 1e-12);
+  EXPECT_NEAR(default_mass_kg(2.0 * 1.741, Sex::male), 8.0 * 73.0, 1e-10);
 }
 
 TEST(Body, SegmentsHaveDeLevasMassesAndInertias) {
@@ -87,6 +92,16 @@ TEST(Ground, FramesBelowTheFloorAreRaisedSmoothlyAndTheFirstStays) {
   for (std::size_t i = 60; i < frames.size(); ++i) EXPECT_NEAR(frames[i][0].translation.y(), 0.095, 1e-12);
   for (std::size_t i = 40; i < 60; ++i)
     EXPECT_LT(frames[i][0].translation.y() - frames[i - 1][0].translation.y(), 0.0025) << "no pop";
+}
+
+TEST(Ground, NothingIsRaisedByMoreThanFourCentimetres) {
+  PerSegment<std::vector<Vec3>> skin;
+  skin[index(Segment::chest)] = {Vec3(0.0, -0.1, 0.0)};
+  std::vector<BodyPose> frames(61);  // the first at the floor, then all 0.3 m below it
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    for (Rigid& segment : frames[i]) segment.translation.y() = i == 0 ? 0.1 : -0.2;
+  EXPECT_NEAR(lift_skin_above_floor(frames, 60.0, skin), 0.040, 1e-12);
+  EXPECT_NEAR(frames.back()[0].translation.y(), -0.16, 1e-12);
 }
 
 }  // namespace

@@ -13,12 +13,13 @@ double covered(const Picture& picture) {
   return sum;
 }
 
-bool holds(const Picture& picture, Color color) {
+int count(const Picture& picture, Color color) {
+  int sum = 0;
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
-    if (picture.rgba[i] == color.r && picture.rgba[i + 1] == color.g && picture.rgba[i + 2] == color.b)
-      return true;
-  return false;
+    if (picture.rgba[i] == color.r && picture.rgba[i + 1] == color.g && picture.rgba[i + 2] == color.b) ++sum;
+  return sum;
 }
+bool holds(const Picture& picture, Color color) { return count(picture, color) > 0; }
 
 JointRange square() {
   JointRange range;
@@ -70,8 +71,7 @@ TEST(RomPlot, OnlyAPathThatLeavesItsRangeIsDrawnInRed) {
   const auto far = draw_rom_overview(figure, 2);
   ASSERT_TRUE(far);
   EXPECT_EQ(calm->width, far->width);
-  EXPECT_FALSE(holds(*calm, kRed));
-  EXPECT_TRUE(holds(*far, kRed));
+  EXPECT_GT(count(*far, kRed), count(*calm, kRed) + 20) << "the calm one has the legend's dot";
   figure.panels.resize(1);
   const auto large = draw_rom_joint(figure);
   ASSERT_TRUE(large);

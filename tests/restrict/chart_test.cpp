@@ -71,6 +71,19 @@ TEST(Polygon, DistanceIsSignedAndExactForConcaveShapes) {
   EXPECT_LT((nearest_boundary_point(shape, Vec2(2, 1.5)) - Vec2(2, 1)).norm(), 1e-15);
 }
 
+TEST(Polygon, EveryEdgeIsNearestToWhatLiesBesideItsMiddle) {
+  const std::vector<Vec2> shape{{-1, -1}, {3, -1}, {3, 1}, {1, 1}, {1, 3}, {-1, 3}};
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    const Vec2 from = shape[i], to = shape[(i + 1) % shape.size()], along = (to - from).normalized();
+    const Vec2 outwards(along.y(), -along.x());  // the corners go round to the left
+    const Vec2 middle = 0.5 * (from + to);
+    EXPECT_LT((nearest_boundary_point(shape, middle + 0.3 * outwards) - middle).norm(), 1e-15)
+        << "edge " << i;
+    EXPECT_NEAR(polygon_distance(shape, middle + 0.3 * outwards), 0.3, 1e-15) << "edge " << i;
+    EXPECT_NEAR(polygon_distance(shape, middle - 0.3 * outwards), -0.3, 1e-15) << "edge " << i;
+  }
+}
+
 TEST(Range, ExcessIsTheLargerOfSwingAndTwistAndClampRemovesIt) {
   JointRange range;
   range.polygon = {{0.5, 0}, {0, 0.5}, {-0.5, 0}, {0, -0.5}};

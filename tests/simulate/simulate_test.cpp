@@ -116,6 +116,7 @@ TEST(Simulate, FreeFallIsTheSemiImplicitClosedForm) {
   for (int n = 0; n <= 480; n += 32)
     EXPECT_NEAR(centre_of_mass(man, result.trajectory.frames[n]).y(),
                 start - 9.81 * h * h * n * (n + 1) / 2.0, 1e-9);
+  EXPECT_NEAR(result.figures.airborne_mean_s, 1.0, 1.5 * h);
 }
 
 TEST(Simulate, MomentumInFlightIsKeptWhileLimitsAreHit) {
@@ -376,6 +377,8 @@ TEST(Simulate, AFallenBodyHardlyMovesOnWhereNothingHoldsIt) {
     EXPECT_LT(figures.jitter_rad_s, 0.02);
     EXPECT_GT(figures.jitter_rad_s, 0.0) << "held after all";
     EXPECT_LT(figures.floor_penetration_end_m, 0.003);
+    EXPECT_GT(figures.floor_penetration_end_m, 0.0) << "what rests on soft ground dips into it";
+    EXPECT_LT(figures.airborne_mean_s, 0.5);
   }
 }
 
