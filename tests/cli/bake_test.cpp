@@ -300,5 +300,18 @@ TEST_F(Bake, OfCharactersMadeByOthersStaysHuman) {
   }
 }
 
+TEST_F(Bake, TheAimMovesTheBlow) {
+  const auto clip = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"bake", "mannequin", "--duration", "0.2", "--quiet", "-o", "a.bvh"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run(arguments).status, 0);
+    return read("a.bvh");
+  };
+  const std::string centre = clip({}), left = clip({"--aim-left", "0.1"}), up = clip({"--aim-up", "0.1"});
+  EXPECT_NE(left, centre);
+  EXPECT_NE(up, centre);
+  EXPECT_NE(up, left);
+}
+
 }  // namespace
 }  // namespace ukemi

@@ -357,6 +357,28 @@ TEST_F(Batch, EndsWithTheReviewPage) {
   EXPECT_FALSE(fs::exists(folder / "without/index.html"));
 }
 
+TEST_F(Batch, AFileThatWasChangedIsBakedAgain) {
+  EXPECT_EQ(batch("out").status, 0);
+  const std::string name =
+      "out/mannequin/" + manifest("out")["reactions"][0]["name"].get<std::string>() + ".bvh";
+  const std::string whole = read(name);
+  std::string changed = whole;
+  ASSERT_FALSE(changed.empty());
+  changed.back() = changed.back() == '1' ? '2' : '1';  // of the same size
+  write(name, changed);
+  EXPECT_EQ(batch("out", {"--resume"}).status, 0);
+  EXPECT_EQ(read(name), whole);
+}
+
+TEST_F(Batch, ASpreadsheetDoesNotRunNames) {
+  write("r.toml",
+        "format = 1\ncharacters = [\"mannequin\"]\noutputs = [\"bvh\"]\n[settings]\nduration = 0.1\n"
+        "[[reaction]]\nname = \"=1+1\"\n");
+  EXPECT_EQ(batch("out").status, 0);
+  const std::string table = read("out/manifest.csv");
+  EXPECT_EQ(table.find(",=1+1"), table.npos) << table;
+}
+
 TEST_F(Batch, ThePageIsMadeAgainWhenItWouldDifferAndLeftAloneElse) {
   const std::string recipe =
       "format = 1\ncharacters = [\"mannequin\"]\n[settings]\nduration = 0.1\n[[reaction]]\nname = \"one\"\n";

@@ -51,6 +51,8 @@ TEST_F(Calibrate, WalkingAndStandingCountAsTheyAreTold) {
   const std::string standing = measured({"--exclude-walking"});
   EXPECT_EQ(standing.find("walking ["), std::string::npos);
   EXPECT_NE(standing.substr(standing.find("\nhip = ")), both.substr(both.find("\nhip = ")));
+  EXPECT_NE(measured({"--exclude-walking", "--factor", "60"}).substr(standing.find("\nhip = ")),
+            standing.substr(standing.find("\nhip = ")));
   EXPECT_NE(measured({"--standing", mannequin}).find("mannequin.bvh (standing)"), std::string::npos);
 }
 
