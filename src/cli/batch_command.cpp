@@ -30,7 +30,6 @@ struct BatchRequest {
   std::string recipe;
   BatchSettings settings;
   double memory_mb = 4096.0;
-  double max_excess_deg = -1.0;
   bool dry_run = false;
   bool review = true;
   bool json = false;
@@ -63,7 +62,8 @@ void declare(Options& options, BatchRequest& request) {
   options.argument("RECIPE", request.recipe, "a .toml file: ukemi recipe prints a commented one");
   options.group("what is baked");
   options.path("-o,--output", settings.folder,
-               "folder for manifest.json, manifest.csv and a folder of each character; made where missing");
+               "folder for manifest.json, manifest.csv and a folder of each character; made where missing",
+               "DIR");
   options.flag("--resume", settings.resume,
                "keep what the folder has of this recipe; bake what is missing or has other inputs");
   options.flag("--force", settings.force, "bake everything again");
@@ -71,13 +71,13 @@ void declare(Options& options, BatchRequest& request) {
   options.custom(
       "--shard", "I/N", [&settings](const std::string& text) { return take_shard(text, settings.shard); },
       "only part I of N; the parts may share a folder");
-  options.paths("--merge", settings.merge,
-                "take over what shards baked, from this folder; bakes nothing; repeatable");
+  options.paths("--merge", settings.merge, "take over what shards baked, from this folder; bakes nothing",
+                "DIR");
   options.group("review");
   options.path("--rejects", settings.rejects,
                "verdicts saved from the review page: rejected variations are baked again with another seed, "
                "other rejected reactions left out");
-  options.number("--max-excess", "DEG", request.max_excess_deg, Range{0.0, 180.0},
+  options.number("--max-excess", "DEG", settings.max_excess_deg, Range{0.0, 180.0},
                  "reject reactions that leave the range of motion farther (before projection); status 1");
   options.flag("--reject-unsettled", settings.reject_unsettled,
                "reject reactions that do not come to rest; status 1");
@@ -248,7 +248,6 @@ int batch_command(const Arguments& arguments) {
   if (const Status status = check(request); !status) return print_error(status.error());
   request.settings.recipe = request.recipe;
   request.settings.workers.memory_bytes = static_cast<std::size_t>(request.memory_mb * kMegabyte);
-  if (request.max_excess_deg >= 0.0) request.settings.max_excess_deg = request.max_excess_deg;
   const auto plan = plan_batch(request.settings);
   if (!plan) return print_error(plan.error());
   if (!request.dry_run) return run_planned(request, *plan);

@@ -48,7 +48,7 @@ void declare(Options& options, CompareRequest& request) {
   declare_humanoid_options(options, settings.humanoid);
   options.group("out");
   options.path("-o,--output", request.folder,
-               "folder for compare.json, compare.txt and the pictures; made where it is missing");
+               "folder for compare.json, compare.txt and the pictures; made where it is missing", "DIR");
   options.whole("--show", "HIT", request.show, 1, kMostHits, "which hit is drawn",
                 "default: the one in which (a) bends a joint farthest out");
   options.flag("--json", request.json, "JSON to stdout in place of the table");

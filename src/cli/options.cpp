@@ -23,6 +23,7 @@ std::string wrapped(const std::string& text, std::size_t width) {
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::size_t length = end - begin;
+    const std::size_t newline = text.substr(begin, length).rfind('\n');
     if (line > 0 && line + 1 + length > width) {
       result += '\n';
       line = 0;
@@ -31,7 +32,7 @@ std::string wrapped(const std::string& text, std::size_t width) {
       ++line;
     }
     result.append(text, begin, length);
-    line += length;
+    line = newline == std::string::npos ? line + length : length - newline - 1;
     begin = end + 1;
   }
   return result;
@@ -43,7 +44,8 @@ class HelpLayout : public CLI::Formatter {
   HelpLayout() { column_width(kNameColumn); }
 
   std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode mode) const override {
-    std::string text = fmt::format("{}\n\nusage: ukemi {}", app->get_description(), app->get_name());
+    std::string text =
+        fmt::format("{}\n\nusage: ukemi {}", wrapped(app->get_description(), kLineWidth), app->get_name());
     for (const CLI::Option* option :
          app->get_options([](const CLI::Option* o) { return o->get_positional(); }))
       text += " " + option->get_name(true, false);
@@ -77,6 +79,16 @@ std::string with_notes(const std::string& help, std::vector<std::string> notes) 
 std::string long_name(const std::string& names) {
   const auto comma = names.rfind(',');
   return comma == std::string::npos ? names : names.substr(comma + 1);
+}
+
+template <typename Target>
+std::function<Status(const std::string&)> take_number(Target& target, const Range& range) {
+  return [&target, range](const std::string& text) -> Status {
+    const auto value = parse_number(text, range);
+    if (!value) return value.error();
+    target = *value;
+    return Done{};
+  };
 }
 
 template <typename Target, typename Number>
@@ -206,12 +218,12 @@ void Options::text(const std::string& names, const std::string& value, std::opti
 void Options::number(const std::string& names, const std::string& unit, double& target, const Range& range,
                      const std::string& help) {
   parser_->declare(names, unit, with_notes(help, {fmt::format("default {}", target), range.text()}), false,
-                   [&target, range](const std::string& text) -> Status {
-                     const auto value = parse_number(text, range);
-                     if (!value) return value.error();
-                     target = *value;
-                     return Done{};
-                   });
+                   take_number(target, range));
+}
+
+void Options::number(const std::string& names, const std::string& unit, std::optional<double>& target,
+                     const Range& range, const std::string& help) {
+  parser_->declare(names, unit, with_notes(help, {range.text()}), false, take_number(target, range));
 }
 
 void Options::whole(const std::string& names, const std::string& unit, int& target, int low, int high,
@@ -233,9 +245,10 @@ void Options::whole(const std::string& names, const std::string& unit, std::uint
                    take_whole(target, low, high));
 }
 
-void Options::path(const std::string& names, std::filesystem::path& target, const std::string& help) {
+void Options::path(const std::string& names, std::filesystem::path& target, const std::string& help,
+                   const std::string& value) {
   custom(
-      names, "FILE",
+      names, value,
       [&target](const std::string& text) -> Status {
         if (text.empty()) return usage_error("the file's name is empty", "name a file");
         target = text;
@@ -245,9 +258,9 @@ void Options::path(const std::string& names, std::filesystem::path& target, cons
 }
 
 void Options::paths(const std::string& names, std::vector<std::filesystem::path>& target,
-                    const std::string& help) {
+                    const std::string& help, const std::string& value) {
   custom(
-      names, "FILE",
+      names, value,
       [&target](const std::string& text) -> Status {
         if (text.empty()) return usage_error("the file's name is empty", "name a file");
         target.emplace_back(text);

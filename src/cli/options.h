@@ -38,6 +38,9 @@ class Options {
             const std::string& help);
   void number(const std::string& names, const std::string& unit, double& target, const Range& range,
               const std::string& help);
+  /// Without a default.
+  void number(const std::string& names, const std::string& unit, std::optional<double>& target,
+              const Range& range, const std::string& help);
   /// A whole number from `low` to `high`; `otherwise` says what is where it is not given, unless that is the
   /// target's value.
   void whole(const std::string& names, const std::string& unit, int& target, int low, int high,
@@ -46,8 +49,11 @@ class Options {
              const std::string& help, const std::string& otherwise);
   void whole(const std::string& names, const std::string& unit, std::uint64_t& target, std::uint64_t low,
              std::uint64_t high, const std::string& help);
-  void path(const std::string& names, std::filesystem::path& target, const std::string& help);
-  void paths(const std::string& names, std::vector<std::filesystem::path>& target, const std::string& help);
+  /// `value`: FILE, or DIR for a folder.
+  void path(const std::string& names, std::filesystem::path& target, const std::string& help,
+            const std::string& value = "FILE");
+  void paths(const std::string& names, std::vector<std::filesystem::path>& target, const std::string& help,
+             const std::string& value = "FILE");
   void flag(const std::string& names, bool& target, const std::string& help);
   void flag(const std::string& names, std::function<void()> take, const std::string& help);
   /// --name and --no-name; `on` is the default.

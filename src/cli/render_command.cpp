@@ -48,7 +48,7 @@ void declare_look(Options& options, RenderSettings& settings) {
   options.flag("--axes", settings.overlays.axes, "each joint's axes: forward red, up green, right blue");
   options.flag("--rom", settings.overlays.ranges,
                "each joint's range of motion as a cone: amber near its edge, red outside");
-  options.text("--region", "NAME", settings.region, "whose ranges: human, diamond, box or a TOML file");
+  options.text("--region", "NAME|FILE", settings.region, "whose ranges: human, diamond, box or a TOML file");
   options.flag("--trail", settings.overlays.trail, "the way of the hips");
 }
 
@@ -61,12 +61,8 @@ void declare_kinds(Options& options, RenderSettings& settings) {
   options.number("--fps", "HZ", settings.fps, Range{1.0, 60.0}, "pictures a second");
   options.number("--speed", "X", settings.speed, Range{0.01, 10.0},
                  "of the clip: 0.25 is four times as slow");
-  options.custom("--turntable", "S",
-                 take_parsed(settings.turn_s,
-                             [](const std::string& text) {
-                               return parse_number(text, Range{0.5, 60.0});
-                             }),
-                 "the camera goes once round in so many seconds [0.5 to 60]");
+  options.number("--turntable", "S", settings.turn_s, Range{0.5, 60.0},
+                 "the camera goes once round in so many seconds");
 }
 
 Status check(const RenderRequest& request) {

@@ -41,13 +41,6 @@ struct RomRequest {
   bool json = false;
 };
 
-Status take_max_excess(RomRequest& request, const std::string& text) {
-  const auto degrees = parse_number(text, kExcessRange);
-  if (!degrees) return degrees.error();
-  request.max_excess_deg = *degrees;
-  return Done{};
-}
-
 void declare(Options& options, RomRequest& request) {
   RomSettings& settings = request.settings;
   options.text("--joint", "NAME", settings.joint,
@@ -63,9 +56,8 @@ void declare(Options& options, RomRequest& request) {
       "a point of the joint, degrees, with the chords of the polygon through it");
   options.flag("--swing", settings.swing,
                "pulls a single link on the joint into its boundary, under axis, segments and edges");
-  options.custom(
-      "--max-excess", "DEG", [&request](const std::string& text) { return take_max_excess(request, text); },
-      "with --check: exit status 1 when a joint lies farther outside than this");
+  options.number("--max-excess", "DEG", request.max_excess_deg, kExcessRange,
+                 "with --check: exit status 1 when a joint lies farther outside than this");
   declare_humanoid_options(options, settings.humanoid);
   options.path("-o,--output", request.output, "the picture, as .png");
   options.flag("--json", request.json, "as JSON to stdout");
