@@ -9,8 +9,9 @@
 namespace ukemi {
 
 /// The text as a file name without extension, legal on Linux, macOS and Windows: letters, digits, . _ - and
-/// UTF-8 beyond ASCII stay (but not what turns the direction of writing); anything else, a run of underscores, and dots and hyphens in front become one
-/// underscore; names that Windows reserves get one behind them; at most 100 bytes. Never empty.
+/// UTF-8 beyond ASCII stay (but not what turns the direction of writing); anything else, a run of
+/// underscores, and dots and hyphens in front become one underscore; names that Windows reserves get one
+/// behind them; at most 100 bytes. Never empty.
 std::string file_name_from(std::string_view text);
 
 /// Relative, and inside the folder that it is relative to (links are not looked at).

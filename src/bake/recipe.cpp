@@ -381,8 +381,9 @@ class RecipeReader {
     for (const auto& output : kOutputWords) words.push_back(output.first);
     std::set<OutputKind> kinds;
     for (const auto& [text, where] : texts_of(node, "outputs")) {
-      const auto found = std::find_if(kOutputWords.begin(), kOutputWords.end(),
-                                      [&wanted = text](const auto& output) { return output.first == wanted; });
+      const auto found =
+          std::find_if(kOutputWords.begin(), kOutputWords.end(),
+                       [&wanted = text](const auto& output) { return output.first == wanted; });
       if (found == kOutputWords.end())
         fail(*where, fmt::format("unknown output '{}'", text), suggestion(text, words));
       kinds.insert(found->second);

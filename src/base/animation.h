@@ -55,7 +55,7 @@ struct Clip {
   double duration_s() const { return frames.empty() ? 0.0 : static_cast<double>(frames.size() - 1) / fps; }
 };
 
-/// The animation sampled from its first key on, at `fps` or, where 5 million transforms do not do, at what they do.
+/// The animation sampled from its first key on, at `fps` or as often as 5 million transforms allow.
 Clip sample_clip(const Skeleton& skeleton, const Animation& animation, double fps);
 
 }  // namespace ukemi

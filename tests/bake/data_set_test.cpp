@@ -104,8 +104,8 @@ TEST(DataSet, EveryFileGetsItsVerdictAndEveryHumanoidBakes) {
     argued += static_cast<int>(kArgued.count(entry.file));
     const std::string height =
         inspection.humanoid ? fmt::format("{:.2f} m", inspection.humanoid->height_m) : "-";
-    fmt::print("{:<13} {:<13} {:>7} {:>4} {:>20}  {}\n", expected_verdict(entry), name(inspection.verdict), height,
-               mapped_segments(inspection), outcome.bake, entry.file);
+    fmt::print("{:<13} {:<13} {:>7} {:>4} {:>20}  {}\n", expected_verdict(entry), name(inspection.verdict),
+               height, mapped_segments(inspection), outcome.bake, entry.file);
     EXPECT_TRUE(outcome.problems.empty()) << entry.file << ":" << outcome.problems;
     disagreements += outcome.problems.empty() ? 0 : 1;
   }

@@ -99,8 +99,8 @@ TEST_F(Browser, ServesAReviewer) {
                   {"judged", judged(clip, "mannequin/head_left")},
                   {"hostile", {{"folder", (folder / "hostile").string()}, {"name", kHostileName}}}};
   ASSERT_TRUE(write_file(folder / "work.json", work.dump()));
-  const auto [output, status] =
-      run_command(fmt::format("node '{}/drive.mjs' '{}'", UKEMI_BROWSER_FOLDER, (folder / "work.json").string()));
+  const auto [output, status] = run_command(
+      fmt::format("node '{}/drive.mjs' '{}'", UKEMI_BROWSER_FOLDER, (folder / "work.json").string()));
   EXPECT_EQ(status, 0) << output;
   EXPECT_NE(output.find(" checks, 0 failed"), std::string::npos) << output;
 }

@@ -1,4 +1,5 @@
-// Files made by others, where UKEMI_EXTRA_DATA names their folder: what is sound loads, what is not is refused.
+// Files made by others, where UKEMI_EXTRA_DATA names their folder: what is sound loads, what is not is
+// refused.
 #include <gtest/gtest.h>
 
 #include <filesystem>

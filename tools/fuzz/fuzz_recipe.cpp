@@ -16,9 +16,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   for (const Reaction& reaction : *reactions) {
     fuzz::require(reaction.character < recipe->characters.size(), "a reaction's character exists");
-    fuzz::require(!reaction.name.empty() && reaction.name.size() <= 255, "a reaction's name is a file's name");
-    fuzz::require(reaction.name.find('/') == std::string::npos && reaction.name != "." && reaction.name != "..",
-                  "a reaction's name leads nowhere else");
+    fuzz::require(!reaction.name.empty() && reaction.name.size() <= 255,
+                  "a reaction's name is a file's name");
+    fuzz::require(
+        reaction.name.find('/') == std::string::npos && reaction.name != "." && reaction.name != "..",
+        "a reaction's name leads nowhere else");
   }
   return 0;
 }
