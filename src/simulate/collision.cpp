@@ -65,8 +65,11 @@ Collision::Collision(OdeWorld& world, const Model& model, const ArticulatedBody&
 }
 
 Collision::~Collision() {
-  if (world_.poisoned()) return;
-  for (const Collider& collider : colliders_) dGeomDestroy(collider.geom);
+  for (const Collider& collider : colliders_)
+    if (world_.poisoned())
+      keep_for_ever(collider.geom);
+    else
+      dGeomDestroy(collider.geom);
 }
 
 void Collision::add_shape(const Model& model, Segment segment, const Shape& shape) {

@@ -5,6 +5,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <mutex>
+#include <vector>
 
 namespace ukemi {
 namespace {
@@ -44,8 +45,20 @@ OdeWorld::OdeWorld() : failures_before_(failures) {
 
 bool OdeWorld::poisoned() const { return failures != failures_before_; }
 
+void keep_for_ever(const void* of_ode) {
+  static std::mutex mutex;
+  static auto* const kept = new std::vector<const void*>;
+  const std::lock_guard lock(mutex);
+  kept->push_back(of_ode);
+}
+
 OdeWorld::~OdeWorld() {
-  if (poisoned()) return;
+  if (poisoned()) {
+    keep_for_ever(contacts_);
+    keep_for_ever(world_);
+    keep_for_ever(threading_);
+    return;
+  }
   dJointGroupDestroy(contacts_);
   dWorldDestroy(world_);
   dThreadingFreeImplementation(threading_);

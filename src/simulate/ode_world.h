@@ -1,6 +1,6 @@
 // An ODE world of one's own: created, stepped, torn down, all in one thread. ODE's fatal errors become
-// exceptions; a world that threw is never touched again (destroying it would abort), so its memory is given
-// up.
+// exceptions; a world that threw is never touched again (destroying it would abort), so it is kept until the
+// process ends.
 #pragma once
 
 #include <stdexcept>
@@ -17,6 +17,8 @@ struct OdeFailure : std::runtime_error {
 
 /// Initialises ODE for this process and thread, once.
 void initialise_ode();
+/// Of a poisoned world: holds what may not be destroyed, so that leak checkers see it as meant.
+void keep_for_ever(const void* of_ode);
 
 class OdeWorld {
  public:
