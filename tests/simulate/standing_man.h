@@ -48,14 +48,18 @@ struct StandingMan {
     for (int j = 0; j < kJointCount; ++j) widen_to_hold(range.joints[j], charts[j], radians(3.0));
   }
 
+  StartState start() const {
+    StartState state;
+    state.segments = segments;
+    return state;
+  }
+
   void place(Segment s, const Vec3& at) { segments[index(s)] = {Quat::Identity(), at}; }
 };
 
 inline SimulationResult run(const StandingMan& man, const Scene& scene, const SimulationSettings& settings) {
-  StartState start;
-  start.segments = man.segments;
   Diagnostics diagnostics;
-  auto result = simulate(man.body, man.range, start, scene, settings, diagnostics);
+  auto result = simulate(man.body, man.range, man.start(), scene, settings, diagnostics);
   EXPECT_TRUE(result) << result.error().message();
   return result ? std::move(*result) : SimulationResult{};
 }
