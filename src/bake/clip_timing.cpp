@@ -15,7 +15,7 @@ constexpr double kUpright = 0.7;    // of the pelvis's height: who is lower does
 constexpr double kCarryOn_s = 0.3;  // in which the velocities at the end of the simulation fade
 constexpr double kFloorSmoothing_s = 0.06;
 
-using Skin = PerSegment<std::vector<Vec3>>;
+using SegmentVertices = PerSegment<std::vector<Vec3>>;
 
 /// Segments of a pose in the frames of the simulation, above a floor at y = 0.
 BodyPose segments_above_floor(const Character& character, const BakeOutcome& outcome,
@@ -76,7 +76,7 @@ void let_go(Prop& prop, double gravity, std::size_t frames, double fps) {
   }
 }
 
-double lowest(const BodyPose& frame, const Skin& skin) {
+double lowest(const BodyPose& frame, const SegmentVertices& skin) {
   double low = std::numeric_limits<double>::infinity();
   for (int s = 0; s < kSegmentCount; ++s)
     for (const Vec3& point : skin[s]) low = std::min(low, (frame[s] * point).y());
@@ -154,7 +154,7 @@ GroundMove place_for(const BodyPose& target, const BodyPose& figure, bool down) 
 /// last.
 void keep_on_floor(const Character& character, BakeOutcome& outcome, const SegmentFrames& frames,
                    std::vector<Pose>& poses) {
-  const Skin skin =
+  const SegmentVertices skin =
       outermost_skin(character, outcome.humanoid, outcome.start.pose, outcome.start.segments, outcome.body);
   std::vector<double> low;
   for (const Pose& pose : poses)

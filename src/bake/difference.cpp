@@ -83,9 +83,9 @@ World world_at(const PlacedClip& clip, double time_s) {
 }
 
 /// Compares two clips of the same joints.
-class Comparison {
+class ClipComparison {
  public:
-  Comparison(const PlacedClip& a, const PlacedClip& b, std::vector<Match> matches)
+  ClipComparison(const PlacedClip& a, const PlacedClip& b, std::vector<Match> matches)
       : a_(a), b_(b), matches_(std::move(matches)) {
     for (const Match& match : matches_)
       joints_.push_back({a.character->skeleton.label(match.node_a), 0, 0, 0, 0});
@@ -205,7 +205,7 @@ Result<Difference> difference_of(const PlacedClip& a, const PlacedClip& b,
     return input_error(b.character->path,
                        "no joint has the same name as one of " + a.character->path.string(),
                        "compare clips of the same skeleton");
-  Comparison comparison(a, b, std::move(matches));
+  ClipComparison comparison(a, b, std::move(matches));
   difference.same_axes = comparison.same_axes();
   difference.rate =
       std::clamp(std::max(native_rate(*a.animation), native_rate(*b.animation)), kMinRate, kMaxRate);

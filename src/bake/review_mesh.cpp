@@ -7,7 +7,7 @@
 
 #include "bake/review_json.h"
 #include "export/container.h"
-#include "export/figure.h"
+#include "export/stick_mesh.h"
 
 namespace ukemi {
 namespace {
@@ -100,20 +100,20 @@ void add_materials(const Character& character, Json& json) {
 
 /// The simple figure as one part with a skin.
 void add_figure(const Character& character, const Humanoid& humanoid, Json& json) {
-  const Figure figure = make_figure(character, humanoid);
+  const StickMesh mesh = make_stick_mesh(character, humanoid);
   MeshPart part;
   part.skin = 0;
-  part.positions = figure.positions;
-  part.normals = figure.normals;
-  for (std::size_t i = 0; i < figure.nodes.size(); ++i) {
-    part.joints.push_back({static_cast<std::uint16_t>(figure.nodes[i]), 0, 0, 0});
+  part.positions = mesh.positions;
+  part.normals = mesh.normals;
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    part.joints.push_back({static_cast<std::uint16_t>(mesh.nodes[i]), 0, 0, 0});
     part.weights.push_back({1.0f, 0.0f, 0.0f, 0.0f});
     part.indices.push_back(static_cast<std::uint32_t>(i));
   }
   std::vector<int> joints;
   for (int i = 0; i < character.skeleton.size(); ++i) joints.push_back(i);
   json["parts"].push_back(part_json(part));
-  json["skins"].push_back(skin_json(joints, figure.inverse_bind));
+  json["skins"].push_back(skin_json(joints, mesh.inverse_bind));
 }
 
 }  // namespace

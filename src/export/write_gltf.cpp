@@ -11,7 +11,7 @@
 #include "base/files.h"
 #include "export/container.h"
 #include "export/export.h"
-#include "export/figure.h"
+#include "export/stick_mesh.h"
 
 namespace ukemi {
 namespace {
@@ -280,7 +280,8 @@ void add_bare_skins(Edit& edit, const Character& character, const Humanoid& huma
   Json skins = Json::array();
   if (character.format == SourceFormat::bvh) {
     skins.push_back({{"joints", character.skeleton.order}});
-    skins[0]["inverseBindMatrices"] = add_inverse_binds(edit, make_figure(character, humanoid).inverse_bind);
+    skins[0]["inverseBindMatrices"] =
+        add_inverse_binds(edit, make_stick_mesh(character, humanoid).inverse_bind);
   }
   const Json all = edit.json.value("skins", Json::array());
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -301,7 +302,7 @@ std::size_t add_attribute(Edit& edit, const std::vector<T>& values, int componen
   return add_accessor(edit, view, 0, component, values.size(), type);
 }
 
-Json vertex_attributes(Edit& edit, const Figure& figure) {
+Json vertex_attributes(Edit& edit, const StickMesh& figure) {
   std::vector<std::array<std::uint16_t, 4>> joints;
   for (const int node : figure.nodes) joints.push_back({static_cast<std::uint16_t>(node), 0, 0, 0});
   const std::vector<std::array<float, 4>> weights(figure.nodes.size(), {1, 0, 0, 0});
@@ -315,7 +316,7 @@ Json vertex_attributes(Edit& edit, const Figure& figure) {
 }
 
 void add_figure(Edit& edit, const Character& character, const Humanoid& humanoid) {
-  const Figure figure = make_figure(character, humanoid);
+  const StickMesh figure = make_stick_mesh(character, humanoid);
   if (figure.positions.empty()) return;
   Json joints = Json::array();
   for (int i = 0; i < character.skeleton.size(); ++i) joints.push_back(i);

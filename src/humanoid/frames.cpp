@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "humanoid/assemble.h"
 #include "humanoid/bones.h"
-#include "humanoid/figure.h"
+#include "humanoid/landmarks.h"
 #include "humanoid/reference.h"
 #include "humanoid/refine.h"
 #include "humanoid/skin.h"
@@ -20,7 +20,7 @@ namespace {
 // ----------------------------------------------------------------------------------------------------
 
 /// Distance from the head joint to the node or BVH end site that marks the crown; 0 where there is none.
-double head_length(const Character& character, const Humanoid& humanoid, const Figure& f) {
+double head_length(const Character& character, const Humanoid& humanoid, const Landmarks& f) {
   const int head = humanoid.segments[index(Segment::head)].node();
   const Vec3 joint = f.world[head].translation();
   if (humanoid.head_top >= 0) return (f.world[humanoid.head_top].translation() - joint).norm();
@@ -33,7 +33,7 @@ double head_length(const Character& character, const Humanoid& humanoid, const F
 /// ankle is 0.491 of the height (de Leva 1996), ankle to head joint 0.84 to 0.91 of it over the rigs that
 /// were looked at.
 double height_in_file(const Character& character, const Humanoid& humanoid, const Reference& reference) {
-  const Figure f(character, humanoid, reference.pose);
+  const Landmarks f(character, humanoid, reference.pose);
   double legs = 0.0;
   for (int side = 0; side < 2; ++side)
     legs += 0.5 * (f.link(kThigh[side], kShank[side]).norm() + f.link(kShank[side], kFoot[side]).norm());
@@ -142,7 +142,7 @@ Mat3 frame_yx(const Vec3& y_hint, const Vec3& x_hint) {
 struct FrameBuilder {
   const Character& character;
   const Humanoid& humanoid;
-  const Figure figure;
+  const Landmarks figure;
   Vec3 up;
   Mat3 w;  // anterior, up, right
   PerSegment<Mat3> frame;
@@ -253,7 +253,7 @@ double clavicle_elevation(RestPoseClass pose) {
 }
 
 RestPoseClass class_of_rest(const Character& character, const Humanoid& humanoid) {
-  const Figure rest(character, humanoid, rest_pose(character.skeleton));
+  const Landmarks rest(character, humanoid, rest_pose(character.skeleton));
   return usable(rest) ? class_of(rest, dominant_axis(rest.rise())) : RestPoseClass::other;
 }
 
@@ -262,7 +262,7 @@ RestPoseClass class_of_rest(const Character& character, const Humanoid& humanoid
 Status find_frames(const Character& character, const HumanoidOptions& options, Humanoid& humanoid,
                    Diagnostics& diagnostics) {
   Reference reference = find_reference(character, humanoid);
-  if (!humanlike(Figure(character, humanoid, reference.pose)))
+  if (!humanlike(Landmarks(character, humanoid, reference.pose)))
     return input_error(
         character.path,
         "not a humanoid: bones were found by name, but no pose of the file has a trunk that rises from "

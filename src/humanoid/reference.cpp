@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "humanoid/figure.h"
+#include "humanoid/landmarks.h"
 
 namespace ukemi {
 
@@ -22,9 +22,9 @@ namespace {
 
 /// How far the lowest joint of a motion moves along `up`, file units: little along the true one, for the
 /// floor carries the figure, whether it stands or lies.
-double spread_of_lowest(const std::vector<Figure>& figures, const Vec3& up) {
+double spread_of_lowest(const std::vector<Landmarks>& figures, const Vec3& up) {
   double least = 1e300, most = -1e300;
-  for (const Figure& figure : figures) {
+  for (const Landmarks& figure : figures) {
     double lowest = 1e300;
     for (const Vec3& origin : figure.origin) lowest = std::min(lowest, origin.dot(up));
     least = std::min(least, lowest);
@@ -36,7 +36,7 @@ double spread_of_lowest(const std::vector<Figure>& figures, const Vec3& up) {
 /// The up axis of a motion: where the head is above the feet, in the mean or, for a figure that spends most
 /// of the time on the ground, at the beginning.
 Vec3 up_of_motion(const Character& character, const Humanoid& humanoid) {
-  std::vector<Figure> figures;
+  std::vector<Landmarks> figures;
   for (const double t : sample_times(character.animations[0], 100))
     figures.emplace_back(character, humanoid, sample(character.skeleton, character.animations[0], t));
   const auto mean_rise = [&](std::size_t count) {
@@ -64,7 +64,7 @@ Reference best_frame(const Character& character, const Humanoid& humanoid, const
   double best_tilt = 1e300;
   for (const double t : sample_times(character.animations[0], 4000)) {
     Pose pose = sample(character.skeleton, character.animations[0], t);
-    const Figure figure(character, humanoid, pose);
+    const Landmarks figure(character, humanoid, pose);
     if (exact_t_pose(figure, up)) return {pose, up, false};
     if (const double tilt = neutrality(figure, up); tilt < best_tilt) {
       best_tilt = tilt;
@@ -101,7 +101,7 @@ Pose bind_pose(const Character& character) {
 /// Turned upright where the figure leans against every axis of the file (an armature with a rotation of its
 /// own).
 Reference upright(const Character& character, const Humanoid& humanoid, Pose pose, const Vec3& up) {
-  const Vec3 rise = Figure(character, humanoid, pose).rise();
+  const Vec3 rise = Landmarks(character, humanoid, pose).rise();
   if (angle(rise, up) < radians(25)) return {std::move(pose), up, false};
   const Vec3 stands = character.format == SourceFormat::gltf ? Vec3(Vec3::UnitY()) : up;
   return {turned(character, std::move(pose), shortest_rotation(rise, stands)), stands, false};
@@ -109,13 +109,13 @@ Reference upright(const Character& character, const Humanoid& humanoid, Pose pos
 
 /// A bind pose leans like the rest pose above it: its legs are straight, so the whole figure is turned.
 Pose standing_straight(const Character& character, const Humanoid& humanoid, Pose bind, const Vec3& up) {
-  const Vec3 rise = Figure(character, humanoid, bind).rise();
+  const Vec3 rise = Landmarks(character, humanoid, bind).rise();
   return angle(rise, up) < radians(5) ? bind
                                       : turned(character, std::move(bind), shortest_rotation(rise, up));
 }
 
 /// A rest pose is as good as the neutral pose when the legs are straight and the arms straight.
-bool clean(const Figure& figure, const Vec3& up) {
+bool clean(const Landmarks& figure, const Vec3& up) {
   return usable(figure) && class_of(figure, up) != RestPoseClass::other && leg_tilt(figure, up) < radians(15);
 }
 
@@ -123,14 +123,14 @@ bool clean(const Figure& figure, const Vec3& up) {
 /// else the best frame.
 Reference reference_of_motion(const Character& character, const Humanoid& humanoid) {
   const Pose rest = rest_pose(character.skeleton);
-  const Figure figure(character, humanoid, rest);
+  const Landmarks figure(character, humanoid, rest);
   const Vec3 rest_up = dominant_axis(figure.rise());
   const Vec3 up = up_of_motion(character, humanoid);
   const bool pose_of_nobody = !usable(figure) || class_of(figure, rest_up) == RestPoseClass::other;
   if (pose_of_nobody) return best_frame(character, humanoid, up);
   if (leg_tilt(figure, rest_up) > radians(12)) {
     const Pose first = sample(character.skeleton, character.animations[0], character.animations[0].start_s);
-    if (exact_t_pose(Figure(character, humanoid, first), up)) return {first, up, false};
+    if (exact_t_pose(Landmarks(character, humanoid, first), up)) return {first, up, false};
   }
   return {up == rest_up ? rest : turned(character, rest, shortest_rotation(rest_up, up)), up, false};
 }
@@ -144,11 +144,11 @@ bool only_motion(const Character& character) {
 Reference find_reference(const Character& character, const Humanoid& humanoid) {
   if (only_motion(character)) return reference_of_motion(character, humanoid);
   const Pose rest = rest_pose(character.skeleton);
-  const Figure figure(character, humanoid, rest);
+  const Landmarks figure(character, humanoid, rest);
   const Vec3 up = dominant_axis(figure.rise());
   if (!clean(figure, up)) {
     const Pose bind = bind_pose(character);
-    const Figure bound(character, humanoid, bind);
+    const Landmarks bound(character, humanoid, bind);
     const Vec3 bind_up = dominant_axis(bound.rise());
     const bool better = usable(bound) && class_of(bound, bind_up) != RestPoseClass::other &&
                         leg_tilt(bound, bind_up) < leg_tilt(figure, up);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "humanoid/figure.h"
+#include "humanoid/landmarks.h"
 
 namespace ukemi {
 namespace {
@@ -39,7 +39,7 @@ Quat mean_of_whole(const std::vector<Quat>& rotations) {
   return middle;
 }
 
-bool is_upright(const Figure& f, const Vec3& up) {
+bool is_upright(const Landmarks& f, const Vec3& up) {
   if (angle(f[Segment::head] - f.hips(), up) > radians(20)) return false;
   for (int side = 0; side < 2; ++side) {
     const Vec3 thigh = f.link(kThigh[side], kShank[side]), shank = f.link(kShank[side], kFoot[side]);
@@ -50,7 +50,7 @@ bool is_upright(const Figure& f, const Vec3& up) {
 }
 
 /// Relative rotations parent -> segment of one frame, by the frames as they stand.
-PerSegment<Quat> relative_rotations(const Humanoid& humanoid, const Figure& figure) {
+PerSegment<Quat> relative_rotations(const Humanoid& humanoid, const Landmarks& figure) {
   PerSegment<Quat> world, relative;
   for (int s = 0; s < kSegmentCount; ++s) {
     const Quat node = rotation_part(figure.world[humanoid.carrier_node(segment_at(s))].linear());
@@ -82,9 +82,9 @@ void add_hand(const PerSegment<Quat>& relative, int side, HandMotion& motion) {
   motion.pronation += Vec2(std::cos(turned), std::sin(turned));
 }
 
-Means measure(const std::vector<Figure>& figures, const Vec3& up, const Humanoid& humanoid) {
+Means measure(const std::vector<Landmarks>& figures, const Vec3& up, const Humanoid& humanoid) {
   Means means;
-  for (const Figure& figure : figures) {
+  for (const Landmarks& figure : figures) {
     const PerSegment<Quat> relative = relative_rotations(humanoid, figure);
     for (int side = 0; side < 2; ++side) add_hand(relative, side, means.hands[side]);
     if (!is_upright(figure, up)) continue;
@@ -155,11 +155,11 @@ struct HingeAxis {
   int count = 0;
 };
 
-HingeAxis measure_hinge(const std::vector<Figure>& figures, const Humanoid& humanoid, Segment upper,
+HingeAxis measure_hinge(const std::vector<Landmarks>& figures, const Humanoid& humanoid, Segment upper,
                         Segment lower, Segment end) {
   HingeAxis axis;
   const int upper_node = humanoid.carrier_node(upper), lower_node = humanoid.carrier_node(lower);
-  for (const Figure& f : figures) {
+  for (const Landmarks& f : figures) {
     const Vec3 n =
         f.link(upper, lower).normalized().cross(f.link(lower, end).normalized());  // length sin(bend)
     if (angle(f.link(upper, lower), f.link(lower, end)) < radians(30)) continue;
@@ -181,7 +181,7 @@ void roll_to(Humanoid& humanoid, Segment s, const Vec3& axis) {
   frame = Quat(m);
 }
 
-void read_hinges(const std::vector<Figure>& figures, Humanoid& humanoid) {
+void read_hinges(const std::vector<Landmarks>& figures, Humanoid& humanoid) {
   constexpr int kFrames = 10;
   for (int side = 0; side < 2; ++side) {
     const HingeAxis elbow = measure_hinge(figures, humanoid, kUpperArm[side], kForearm[side], kHand[side]);
@@ -200,7 +200,7 @@ struct FootReading {
 
 /// The foot as if it lay flat: y up, x towards the toes. Nothing on tiptoe or below a shank that does not
 /// stand.
-std::optional<FootReading> read_foot(const Figure& figure, const Vec3& up, int side, int foot, int toe) {
+std::optional<FootReading> read_foot(const Landmarks& figure, const Vec3& up, int side, int foot, int toe) {
   const Vec3 ankle = figure.world[foot].translation(), tip = figure.world[toe].translation();
   const Vec3 forward = (tip - ankle) - (tip - ankle).dot(up) * up;
   if (forward.norm() < 0.8 * (tip - ankle).norm()) return std::nullopt;
@@ -212,13 +212,13 @@ std::optional<FootReading> read_foot(const Figure& figure, const Vec3& up, int s
 }
 
 /// Mean over the lowest tenth of the readings, where feet lie flat.
-void read_feet_where_flat(const std::vector<Figure>& figures, const Vec3& up, Humanoid& humanoid) {
+void read_feet_where_flat(const std::vector<Landmarks>& figures, const Vec3& up, Humanoid& humanoid) {
   for (int side = 0; side < 2; ++side) {
     const int foot = humanoid.segments[index(kFoot[side])].node();
     const int toe = humanoid.toes[side];
     if (foot < 0 || toe < 0) continue;
     std::vector<FootReading> readings;
-    for (const Figure& figure : figures)
+    for (const Landmarks& figure : figures)
       if (const auto reading = read_foot(figure, up, side, foot, toe)) readings.push_back(*reading);
     std::stable_sort(readings.begin(), readings.end(),
                      [](const FootReading& a, const FootReading& b) { return a.height < b.height; });
@@ -232,7 +232,7 @@ void read_feet_where_flat(const std::vector<Figure>& figures, const Vec3& up, Hu
 
 void refine_from_motion(const Character& character, const Reference& reference, Humanoid& humanoid) {
   if (!only_motion(character)) return;
-  std::vector<Figure> figures;
+  std::vector<Landmarks> figures;
   for (const double t : sample_times(character.animations[0], kMostFrames))
     figures.emplace_back(character, humanoid, sample(character.skeleton, character.animations[0], t));
   if (reference.is_frame) read_feet_where_flat(figures, reference.up, humanoid);

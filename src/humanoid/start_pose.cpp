@@ -4,8 +4,8 @@
 #include <initializer_list>
 #include <optional>
 
-#include "humanoid/figure.h"
 #include "humanoid/humanoid.h"
+#include "humanoid/landmarks.h"
 #include "humanoid/skin.h"
 
 namespace ukemi {
@@ -195,7 +195,7 @@ namespace {
 /// The rest pose, unless it is no pose or does not stand upright: then the reference pose.
 Pose rest_on_feet(const Character& character, const Humanoid& humanoid) {
   const Pose rest = rest_pose(character.skeleton);
-  const Figure figure(character, humanoid, rest);
+  const Landmarks figure(character, humanoid, rest);
   const Vec3 up = humanoid.world_from_file.rotation.conjugate() * Vec3::UnitY();
   return usable(figure) && angle(figure.rise(), up) < radians(25) ? rest : humanoid.reference;
 }
@@ -205,10 +205,10 @@ Pose rest_on_feet(const Character& character, const Humanoid& humanoid) {
 namespace {
 
 /// Skin of a standing body that its arms shall not reach into.
-class Surface {
+class SkinSurface {
  public:
-  Surface(const Character& character, const Humanoid& humanoid, const BodyPose& from, const BodyPose& body,
-          bool (*counts)(Segment))
+  SkinSurface(const Character& character, const Humanoid& humanoid, const BodyPose& from,
+              const BodyPose& body, bool (*counts)(Segment))
       : band_m_(kBand * humanoid.height_m) {
     const Pose pose = pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, body);
     const std::vector<Segment> segments = segments_of_nodes(character.skeleton, humanoid);
@@ -269,7 +269,7 @@ std::optional<BodyPose> held_away(Stance stance, const BodyPose& from, double he
 
 /// Standing with hanging arms, held away from a trunk that they would hang into where that helps.
 BodyPose stand(const Character& character, const Humanoid& humanoid, const BodyPose& from) {
-  const Surface trunk(character, humanoid, from, body_in(kStand, from), [](Segment s) {
+  const SkinSurface trunk(character, humanoid, from, body_in(kStand, from), [](Segment s) {
     return is_trunk(s) || s == Segment::thigh_l || s == Segment::thigh_r;
   });
   const auto clearance = [&](const BodyPose& body) {
@@ -290,8 +290,8 @@ BodyPose stand(const Character& character, const Humanoid& humanoid, const BodyP
 /// below it.
 BodyPose guard(const Character& character, const Humanoid& humanoid, const BodyPose& from) {
   constexpr double kFist = 0.05;  // from wrist to fist, of the height
-  const Surface front(character, humanoid, from, body_in(kGuard, from),
-                      [](Segment s) { return is_trunk(s) || s == Segment::head; });
+  const SkinSurface front(character, humanoid, from, body_in(kGuard, from),
+                          [](Segment s) { return is_trunk(s) || s == Segment::head; });
   const auto clearance = [&](const BodyPose& body) {
     const Vec3 ahead = heading_of(from[index(Segment::pelvis)].rotation) * Vec3::UnitX();
     double least = 1e300;

@@ -120,7 +120,7 @@ int head_above(const Tree& tree, int fork, const Pair& arms) {
   return before != fork && tree.carries_skin[before] ? before : end;
 }
 
-struct Shape {
+struct BodyPlan {
   int pelvis = -1, head = -1;
   Pair legs, arms;
   double score = 0.0;
@@ -128,7 +128,7 @@ struct Shape {
 
 /// Legs point away from the trunk, arms do not reach as far down as the legs, all limbs have human
 /// proportions.
-bool plausible(const Tree& tree, const Shape& shape) {
+bool plausible(const Tree& tree, const BodyPlan& shape) {
   const auto& p = tree.position;
   const Vec3 hips = 0.5 * (p[shape.legs.a.upper] + p[shape.legs.b.upper]);
   const Vec3 feet = 0.5 * (p[shape.legs.a.end] + p[shape.legs.b.end]);
@@ -141,7 +141,7 @@ bool plausible(const Tree& tree, const Shape& shape) {
 }
 
 /// True when a is on the subject's left: the feet point forward, else glTF's +z (z up: -y) is forward.
-bool first_is_left(const Tree& tree, const Shape& shape) {
+bool first_is_left(const Tree& tree, const BodyPlan& shape) {
   const auto& p = tree.position;
   const Vec3 hips = 0.5 * (p[shape.legs.a.upper] + p[shape.legs.b.upper]);
   const Vec3 ankles = 0.5 * (p[shape.legs.a.end] + p[shape.legs.b.end]);
@@ -154,18 +154,18 @@ bool first_is_left(const Tree& tree, const Shape& shape) {
   return (p[shape.legs.a.upper] - p[shape.legs.b.upper]).dot(right) < 0.0;
 }
 
-std::optional<Shape> best_shape(const Tree& tree) {
+std::optional<BodyPlan> best_shape(const Tree& tree) {
   std::vector<std::pair<int, Pair>> forks;
   for (const int node : tree.skeleton.order)
     for (const Pair& pair : mirrored_pairs(tree, node)) forks.emplace_back(node, pair);
-  std::optional<Shape> best;
+  std::optional<BodyPlan> best;
   for (const auto& [lower, legs] : forks)
     for (const auto& [upper, arms] : forks) {
       if (!tree.skeleton.is_ancestor(lower, upper)) continue;
       const bool trunk_is_a_leg = is_at_or_below(tree.skeleton, legs.a.upper, upper) ||
                                   is_at_or_below(tree.skeleton, legs.b.upper, upper);
       if (trunk_is_a_leg) continue;
-      Shape shape{lower, head_above(tree, upper, arms), legs, arms, legs.length() + arms.length()};
+      BodyPlan shape{lower, head_above(tree, upper, arms), legs, arms, legs.length() + arms.length()};
       if (shape.head < 0 || !plausible(tree, shape)) continue;
       if (!best || shape.score > best->score) best = shape;
     }

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "humanoid/figure.h"
+#include "humanoid/landmarks.h"
 
 namespace ukemi {
 namespace {
@@ -11,7 +11,7 @@ constexpr double kSameRotation = radians(1.0);
 constexpr double kSamePlace = 0.02;  // of the length of a leg
 
 double leg_length(const Character& character, const Humanoid& humanoid) {
-  const Figure f(character, humanoid, humanoid.reference);
+  const Landmarks f(character, humanoid, humanoid.reference);
   double length = 0.0;
   for (int side = 0; side < 2; ++side)
     length += 0.5 * (f.link(kThigh[side], kShank[side]).norm() + f.link(kShank[side], kFoot[side]).norm());

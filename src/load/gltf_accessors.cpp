@@ -16,22 +16,22 @@ namespace {
 // More elements than any character needs; keeps a small file from asking for gigabytes of zeros.
 constexpr std::int64_t kMaxElements = std::int64_t{1} << 25;
 
-struct Shape {
+struct ElementType {
   const char* name;
   int columns;
   int rows;
 };
-constexpr std::array<Shape, 7> kShapes{{{"SCALAR", 1, 1},
-                                        {"VEC2", 1, 2},
-                                        {"VEC3", 1, 3},
-                                        {"VEC4", 1, 4},
-                                        {"MAT2", 2, 2},
-                                        {"MAT3", 3, 3},
-                                        {"MAT4", 4, 4}}};
+constexpr std::array<ElementType, 7> kShapes{{{"SCALAR", 1, 1},
+                                              {"VEC2", 1, 2},
+                                              {"VEC3", 1, 3},
+                                              {"VEC4", 1, 4},
+                                              {"MAT2", 2, 2},
+                                              {"MAT3", 3, 3},
+                                              {"MAT4", 4, 4}}};
 
-const Shape& shape_named(const JsonView& name) {
+const ElementType& shape_named(const JsonView& name) {
   const std::string text = name.text();
-  for (const Shape& shape : kShapes)
+  for (const ElementType& shape : kShapes)
     if (text == shape.name) return shape;
   name.refuse(fmt::format("is \"{}\", which is no accessor type", text));
 }
@@ -44,7 +44,7 @@ ComponentType component_type_of(const JsonView& value) {
 }
 
 /// Byte offsets of an element's components: columns of matrices start at multiples of four.
-std::vector<std::size_t> component_offsets(const Shape& shape, ComponentType type) {
+std::vector<std::size_t> component_offsets(const ElementType& shape, ComponentType type) {
   const std::size_t column_bytes = static_cast<std::size_t>(shape.rows) * byte_size(type);
   const std::size_t column_stride = shape.columns > 1 ? (column_bytes + 3) / 4 * 4 : column_bytes;
   std::vector<std::size_t> offsets;
@@ -224,7 +224,7 @@ void Accessors::read_accessor(const JsonView& json) {
   if (accessor.normalized &&
       (accessor.component_type == ComponentType::float32 || accessor.component_type == ComponentType::uint32))
     json.refuse("is normalized, but its component type is not an 8 or 16 bit integer");
-  const Shape& shape = shape_named(json.at("type"));
+  const ElementType& shape = shape_named(json.at("type"));
   accessor.components = shape.columns * shape.rows;
   const auto offsets = component_offsets(shape, accessor.component_type);
   const std::size_t bytes = element_bytes(offsets, accessor.component_type);

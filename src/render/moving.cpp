@@ -53,7 +53,7 @@ Status check(const Shot& shot, const MovingOptions& options) {
 }
 
 /// The camera carried round the vertical through the stage's focus.
-Stage turned(Stage stage, double angle) {
+StageView turned(StageView stage, double angle) {
   if (angle == 0.0) return stage;
   const Quat turn(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   stage.camera.eye = stage.focus + turn * (stage.camera.eye - stage.focus);

@@ -139,9 +139,9 @@ struct Painter::State {
   void send(const Geometry& geometry) const;
   void draw_shadow_casters(const Geometry& geometry) const;
   void draw_light_map(const Geometry& geometry, const Eigen::Matrix4f& light) const;
-  void draw_floor_map(const Geometry& geometry, const Stage& stage, const Vec3& area,
+  void draw_floor_map(const Geometry& geometry, const StageView& stage, const Vec3& area,
                       const Vec3& to_key) const;
-  void draw_floor(const Stage& stage, const Vec3& area) const;
+  void draw_floor(const StageView& stage, const Vec3& area) const;
   void draw_pieces(const Geometry& geometry) const;
   void draw_front(const Geometry& geometry) const;
   Picture read() const;
@@ -326,7 +326,7 @@ void Painter::State::draw_light_map(const Geometry& geometry, const Eigen::Matri
   gl.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
-void Painter::State::draw_floor_map(const Geometry& geometry, const Stage& stage, const Vec3& area,
+void Painter::State::draw_floor_map(const Geometry& geometry, const StageView& stage, const Vec3& area,
                                     const Vec3& to_key) const {
   gl.BindFramebuffer(GL_FRAMEBUFFER, flat_target);
   gl.Viewport(0, 0, kFloorMapSize, kFloorMapSize);
@@ -362,7 +362,7 @@ void Painter::State::draw_floor_map(const Geometry& geometry, const Stage& stage
                 bytes.data());
 }
 
-void Painter::State::draw_floor(const Stage& stage, const Vec3& area) const {
+void Painter::State::draw_floor(const StageView& stage, const Vec3& area) const {
   Geometry quad;
   quad.begin({});
   const double side = 8.0 * stage.reach;
@@ -468,7 +468,7 @@ Result<std::unique_ptr<Painter>> Painter::make(int width, int height, const std:
   return std::unique_ptr<Painter>(new Painter(std::move(state)));
 }
 
-Picture Painter::draw(const FrameGeometry& frame, const Stage& stage) {
+Picture Painter::draw(const FrameGeometry& frame, const StageView& stage) {
   const State& s = *state_;
   const Gl& gl = s.gl;
   const Vec3 to_key = towards(stage.camera, kKeyAzimuth, kKeyElevation);

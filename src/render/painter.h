@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "render/camera.h"
-#include "render/figure.h"
+#include "render/drawn_character.h"
 #include "render/offscreen.h"
 #include "render/render.h"
 #include "render/theme.h"
 
 namespace ukemi {
 
-struct Stage {
+struct StageView {
   Camera camera;
   double floor_y = 0.0;
   Vec3 focus = Vec3::Zero();  // middle of the action, on the floor
@@ -30,7 +30,7 @@ class Painter {
                                                OffscreenKind kind = OffscreenKind::any);
   ~Painter();
 
-  Picture draw(const FrameGeometry& frame, const Stage& stage);
+  Picture draw(const FrameGeometry& frame, const StageView& stage);
 
  private:
   struct State;

@@ -37,7 +37,7 @@ Status check(const std::vector<MarkedShot>& rows) {
   return Done{};
 }
 
-JointPaths joint_paths(const Figure& figure, const Shot& shot) {
+JointPaths joint_paths(const DrawnCharacter& figure, const Shot& shot) {
   JointPaths paths;
   for (std::size_t frame = 0; frame < shot.clip->frames.size(); ++frame)
     paths.push_back(figure.joints(static_cast<int>(frame)));
@@ -107,7 +107,7 @@ int heading_height(const std::vector<std::string>& notes) {
   return kMargin + 38 + 23 * static_cast<int>(notes.size());
 }
 
-FrameGeometry cell_geometry(const Figure& figure, const MarkedShot& row, int frame) {
+FrameGeometry cell_geometry(const DrawnCharacter& figure, const MarkedShot& row, int frame) {
   FrameGeometry geometry = figure.geometry(frame);
   if (shows_arrow(row.shot, frame)) add_blow_arrow(geometry.solid, row.shot, frame);
   if (static_cast<std::size_t>(frame) < row.markers.size()) add_markers(geometry, row.markers[frame]);
@@ -115,8 +115,8 @@ FrameGeometry cell_geometry(const Figure& figure, const MarkedShot& row, int fra
 }
 
 /// One view of one frame, its red spots labelled.
-void draw_cell(Picture& page, const Fonts& fonts, Painter& painter, const Figure& figure,
-               const MarkedShot& row, int frame, const Stage& stage, const Box& cell,
+void draw_cell(Picture& page, const Fonts& fonts, Painter& painter, const DrawnCharacter& figure,
+               const MarkedShot& row, int frame, const StageView& stage, const Box& cell,
                const std::string& label, double label_size) {
   paste(page, painter.draw(cell_geometry(figure, row, frame), stage), cell.x, cell.y, 6.0);
   outline(page, cell, 6.0, kCellBorder);
@@ -126,7 +126,7 @@ void draw_cell(Picture& page, const Fonts& fonts, Painter& painter, const Figure
 }
 
 /// Caption and cells; `first`: upper left corner of the row, size of a cell.
-void draw_row(Picture& page, const Fonts& fonts, Painter& painter, const Figure& figure,
+void draw_row(Picture& page, const Fonts& fonts, Painter& painter, const DrawnCharacter& figure,
               const MarkedShot& row, const std::vector<Moment>& moments, const Staging& staging,
               const Box& first) {
   const double after = fonts.bold.draw(page, first.x, first.y + 22, row.shot.title, kRowSize, kInk);
@@ -151,7 +151,7 @@ Result<Picture> render_rows(const std::vector<MarkedShot>& rows, const RowsOptio
       Painter::make(options.cell_width, options.cell_height, decode_textures(*rows.front().shot.character));
   if (!painter) return painter.error();
 
-  std::vector<Figure> figures;
+  std::vector<DrawnCharacter> figures;
   JointPaths together(rows.front().shot.clip->frames.size());
   std::size_t steady = rows.size();  // first row that stays in view
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -192,13 +192,13 @@ Result<Picture> render_close_up(const MarkedShot& marked, const CloseUpOptions& 
       Painter::make(options.cell_width, options.cell_height, decode_textures(*marked.shot.character));
   if (!painter) return painter.error();
 
-  const Figure figure(marked.shot, {});
+  const DrawnCharacter figure(marked.shot, {});
   const double aspect = static_cast<double>(options.cell_width) / options.cell_height;
   const JointPaths still(static_cast<std::size_t>(options.frame) + 1, figure.joints(options.frame));
   const Staging whole = set_stage(figure, marked.shot, still, {{options.frame, ""}}, aspect, 0.06);
-  std::vector<Stage> views = {whole.stage};
+  std::vector<StageView> views = {whole.stage};
   for (const double azimuth : {radians(0.0), radians(90.0)}) {
-    Stage stage = whole.stage;
+    StageView stage = whole.stage;
     const Vec3 back = whole.stage.camera.world_from_camera * Vec3::UnitZ();
     stage.camera.world_from_camera = look(std::atan2(back.x(), back.z()) + azimuth, radians(18.0));
     Framing framing(stage.camera, {0.05, 0.05, 0.05, 0.1});

@@ -152,7 +152,7 @@ void draw_timeline(Picture& page, const Pen& pen, const Timeline& timeline, cons
   }
 }
 
-double draw_scale(Picture& page, const Pen& pen, const Stage& stage, int cell_height, int x, int baseline,
+double draw_scale(Picture& page, const Pen& pen, const StageView& stage, int cell_height, int x, int baseline,
                   const std::string& remark) {
   const Vec3 focus = stage.focus + Vec3(0.0, 0.5, 0.0);
   const double distance = (stage.camera.eye - focus).dot(stage.camera.world_from_camera * Vec3::UnitZ());

@@ -50,7 +50,7 @@ void draw_timeline(Picture& page, const Pen& pen, const Timeline& timeline, cons
 
 /// A bar as long as a metre (or a part or a multiple of it) at the stage's focus, and what is said beside it.
 /// Returns the x after it.
-double draw_scale(Picture& page, const Pen& pen, const Stage& stage, int cell_height, int x, int baseline,
+double draw_scale(Picture& page, const Pen& pen, const StageView& stage, int cell_height, int x, int baseline,
                   const std::string& remark);
 
 }  // namespace ukemi

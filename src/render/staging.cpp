@@ -98,8 +98,8 @@ void add_blow_arrow(FrameGeometry& geometry, const Shot& shot, int frame) {
   add_blow_arrow(geometry.overlay, shot, frame, kHiddenArrowAlpha);
 }
 
-Stage Staging::at(int frame) const {
-  Stage moved = stage;
+StageView Staging::at(int frame) const {
+  StageView moved = stage;
   if (!follows()) return moved;
   moved.camera.eye += shifts[frame];
   moved.focus += shifts[frame];
@@ -110,7 +110,7 @@ namespace {
 
 /// Everything that the camera must hold, seen from a stage that moves by `shifts` (or not, when empty).
 template <typename Visit>
-void each_point(const Figure& figure, const Shot& shot, const JointPaths& joints,
+void each_point(const DrawnCharacter& figure, const Shot& shot, const JointPaths& joints,
                 const std::vector<Moment>& moments, const std::vector<Vec3>& shifts, Visit&& visit) {
   const auto shift = [&](std::size_t frame) { return shifts.empty() ? Vec3(Vec3::Zero()) : shifts[frame]; };
   for (std::size_t frame = 0; frame < joints.size(); ++frame)
@@ -132,7 +132,7 @@ std::vector<Vec3> floor_ways(const JointPaths& joints) {
 
 }  // namespace
 
-Quat telling_side(const Figure& figure, const Shot& shot, const JointPaths& joints,
+Quat telling_side(const DrawnCharacter& figure, const Shot& shot, const JointPaths& joints,
                   const std::optional<ViewAngles>& view) {
   if (view) {
     const Vec3 facing = figure.facing(0);
@@ -143,8 +143,8 @@ Quat telling_side(const Figure& figure, const Shot& shot, const JointPaths& join
   return look(std::atan2(back.x(), back.z()), kElevation);
 }
 
-Stage stage_about(const Camera& camera, const Eigen::AlignedBox3d& seen) {
-  Stage stage;
+StageView stage_about(const Camera& camera, const Eigen::AlignedBox3d& seen) {
+  StageView stage;
   stage.camera = camera;
   stage.floor_y = floor_height(seen.min().y());
   stage.focus = {seen.center().x(), stage.floor_y, seen.center().z()};
@@ -152,7 +152,7 @@ Stage stage_about(const Camera& camera, const Eigen::AlignedBox3d& seen) {
   return stage;
 }
 
-Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
+Staging set_stage(const DrawnCharacter& figure, const Shot& shot, const JointPaths& joints,
                   const std::vector<Moment>& moments, double aspect, double top, const Viewpoint& viewpoint) {
   Camera camera;
   camera.aspect = aspect;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "render/figure.h"
+#include "render/drawn_character.h"
 #include "render/moments.h"
 #include "render/painter.h"
 
@@ -16,17 +16,17 @@ using JointPaths = std::vector<std::vector<Vec3>>;
 
 /// The stage of a motion, and how it moves along where the figure goes far.
 struct Staging {
-  Stage stage;
+  StageView stage;
   std::vector<Vec3> shifts;  // per frame, horizontal, metres; empty: the camera stands still
 
   bool follows() const { return !shifts.empty(); }
-  Stage at(int frame) const;
+  StageView at(int frame) const;
 };
 
 /// The way the camera looks, and a stage whose camera stands where `framing` put it; `seen`: what it holds.
-Quat telling_side(const Figure& figure, const Shot& shot, const JointPaths& joints,
+Quat telling_side(const DrawnCharacter& figure, const Shot& shot, const JointPaths& joints,
                   const std::optional<ViewAngles>& view = {});
-Stage stage_about(const Camera& camera, const Eigen::AlignedBox3d& seen);
+StageView stage_about(const Camera& camera, const Eigen::AlignedBox3d& seen);
 
 struct Viewpoint {
   std::optional<ViewAngles> view{};
@@ -38,7 +38,7 @@ struct Viewpoint {
 /// towards the figure's front, and holds all joints of all frames and all that the moments show. It stands
 /// still unless the figure would become much smaller than with a camera that follows it. Top: share of the
 /// picture's height that is kept free for labels.
-Staging set_stage(const Figure& figure, const Shot& shot, const JointPaths& joints,
+Staging set_stage(const DrawnCharacter& figure, const Shot& shot, const JointPaths& joints,
                   const std::vector<Moment>& moments, double aspect, double top,
                   const Viewpoint& viewpoint = {});
 

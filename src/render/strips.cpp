@@ -39,7 +39,7 @@ ViewAngles common_view(const Studio& first, const std::optional<ViewAngles>& vie
   return {std::atan2(back.x(), back.z()) - front, std::asin(std::clamp(back.y(), -1.0, 1.0))};
 }
 
-double distance_of(const Stage& stage) {
+double distance_of(const StageView& stage) {
   return (stage.camera.eye - stage.focus).dot(stage.camera.world_from_camera * Vec3::UnitZ());
 }
 

@@ -48,7 +48,7 @@ FrameGeometry Studio::geometry(int frame) const {
 
 Result<Studio> study(const Shot& shot, const Overlays& overlays) {
   if (const Status status = check(shot); !status) return status.error();
-  Studio studio{shot, Figure(shot, overlays), {}, nullptr};
+  Studio studio{shot, DrawnCharacter(shot, overlays), {}, nullptr};
   for (std::size_t frame = 0; frame < shot.clip->frames.size(); ++frame)
     studio.joints.push_back(studio.figure.joints(static_cast<int>(frame)));
   if (const Status status = check_finite(shot, studio.joints); !status) return status.error();

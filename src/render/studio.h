@@ -10,7 +10,7 @@ namespace ukemi {
 
 struct Studio {
   const Shot& shot;
-  Figure figure;
+  DrawnCharacter figure;
   JointPaths joints;
   std::unique_ptr<Painter> painter;
 

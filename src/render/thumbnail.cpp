@@ -10,7 +10,7 @@ constexpr double kFree = 0.06;  // of half the picture, at its edges
 Result<Picture> render_thumbnail(const Shot& shot, const ThumbnailOptions& options) {
   const auto studio = open_studio(shot, {}, options.width, options.height);
   if (!studio) return studio.error();
-  const Figure& figure = studio->figure;
+  const DrawnCharacter& figure = studio->figure;
   const int frame = halfway_frame(*shot.clip, studio->joints);
 
   FrameGeometry geometry = figure.geometry(frame);
@@ -31,7 +31,7 @@ Result<Picture> render_thumbnail(const Shot& shot, const ThumbnailOptions& optio
       framing.add(vertex.position.cast<double>());
       seen.extend(vertex.position.cast<double>());
     }
-  Stage stage = stage_about(framing.fit(), seen);
+  StageView stage = stage_about(framing.fit(), seen);
   stage.theme = theme(options.theme);
   return studio->painter->draw(geometry, stage);
 }

@@ -13,7 +13,7 @@
 #include "simulate/figures.h"
 #include "simulate/limits.h"
 #include "simulate/model.h"
-#include "simulate/stage.h"
+#include "simulate/scene_props.h"
 
 namespace ukemi {
 namespace {
@@ -174,7 +174,7 @@ class Simulation {
   OdeWorld world_;
   Model model_;
   Collision collision_;
-  Stage stage_;
+  SceneProps stage_;
   Recorder recorder_;
   std::vector<PassiveLimit> passive_;
   std::vector<ActiveLimit> active_;

@@ -27,7 +27,7 @@ TEST(Offscreen, egl_draws_what_osmesa_draws) {
   FrameGeometry frame;
   frame.solid.begin({});
   add_ball(frame.solid, {}, 0.5, srgb(0xE07A3F), srgb(0x7A3B1D));
-  Stage stage;
+  StageView stage;
   stage.camera.eye = {0.0, 0.0, 3.0};
   stage.floor_y = -0.5;
   std::string reason;

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "render/boxy.h"
-#include "render/figure.h"
+#include "render/drawn_character.h"
 
 namespace ukemi {
 namespace {
@@ -102,8 +102,8 @@ TEST(Overlays, axes_point_along_the_segment) {
 
 TEST(Overlays, trail_leads_from_the_start_to_the_frame) {
   BoxyScene scene;
-  const Figure plain(scene.shot, {});
-  const Figure trailed(scene.shot, {.trail = true});
+  const DrawnCharacter plain(scene.shot, {});
+  const DrawnCharacter trailed(scene.shot, {.trail = true});
   EXPECT_EQ(trailed.geometry(0).solid.indices.size(), plain.geometry(0).solid.indices.size());
   const std::size_t ten = trailed.geometry(10).solid.indices.size() - plain.geometry(10).solid.indices.size();
   const std::size_t twenty =

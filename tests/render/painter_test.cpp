@@ -20,8 +20,8 @@ bool reddish(const Pixel& p) { return p.r > p.g + 60 && p.r > p.b + 60; }
 bool greenish(const Pixel& p) { return p.g > p.r + 60 && p.g > p.b + 60; }
 
 /// Looks along -z at the plane z = 0, which fills the picture from -1 to 1; the floor is far below.
-Stage front_stage() {
-  Stage stage;
+StageView front_stage() {
+  StageView stage;
   stage.camera.eye = {0.0, 0.0, 1.0 / std::tan(0.5 * stage.camera.vertical_fov)};
   stage.floor_y = -50.0;
   return stage;
@@ -129,7 +129,7 @@ TEST(Painter, blends_the_overlay_over_everything) {
 
 TEST(Painter, darkens_the_floor_under_a_ball) {
   FrameGeometry frame;
-  Stage stage;
+  StageView stage;
   stage.camera.world_from_camera = look(0.0, radians(40.0));
   stage.camera.eye = stage.camera.world_from_camera * Vec3(0.0, 0.0, 4.0);
   auto painter = Painter::make(kSide, kSide, {});

@@ -103,7 +103,7 @@ TEST(Sheet, says_title_figures_time_and_phase) {
 
 TEST(Sheet, camera_holds_all_joints_of_all_frames) {
   const Scene scene;
-  const Figure figure(scene.shot, {});
+  const DrawnCharacter figure(scene.shot, {});
   JointPaths joints;
   for (int frame = 0; frame < 46; ++frame) joints.push_back(figure.joints(frame));
   for (const double aspect : {0.5, 0.9, 2.0}) {
@@ -127,7 +127,7 @@ TEST(Sheet, camera_follows_a_figure_that_goes_far) {
   scene.shot.impact_direction.setZero();
   for (std::size_t frame = 0; frame < scene.clip.frames.size(); ++frame)
     scene.clip.frames[frame][0].translation.x() += 0.3 * static_cast<double>(frame);
-  const Figure figure(scene.shot, {});
+  const DrawnCharacter figure(scene.shot, {});
   JointPaths joints;
   for (int frame = 0; frame < 46; ++frame) joints.push_back(figure.joints(frame));
   const Staging staging =
@@ -151,7 +151,7 @@ TEST(Sheet, camera_follows_a_figure_that_goes_far) {
 
 TEST(Sheet, is_seen_across_the_blow_running_from_left_to_right) {
   Scene scene;
-  const Figure figure(scene.shot, {});
+  const DrawnCharacter figure(scene.shot, {});
   const JointPaths joints{figure.joints(0)};
   for (const Vec3& blow : {Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(-0.6, 0.0, 0.8)}) {
     scene.shot.impact_direction = blow;
@@ -167,7 +167,7 @@ TEST(Sheet, shows_the_front_of_the_figure) {
   // The boxy figure looks along +z; segments have x in front.
   humanoid.node_from_segment[index(Segment::pelvis)] = Quat(Eigen::AngleAxisd(-0.5 * kPi, Vec3::UnitY()));
   scene.shot.humanoid = &humanoid;
-  const Figure figure(scene.shot, {});
+  const DrawnCharacter figure(scene.shot, {});
   EXPECT_LT((figure.facing(0) - Vec3::UnitZ()).norm(), 1e-12);
   for (const Vec3& blow : {Vec3(0, 0, -1), Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, -1, 0)}) {
     scene.shot.impact_direction = blow;
@@ -202,7 +202,7 @@ TEST(Sheet, fills_the_page_that_is_asked_for) {
 
 TEST(Sheet, is_seen_from_where_it_is_asked_to) {
   Scene scene;
-  const Figure figure(scene.shot, {});
+  const DrawnCharacter figure(scene.shot, {});
   const JointPaths joints{figure.joints(0)};
   for (const double azimuth : {0.0, 1.0, -2.0}) {
     const Viewpoint viewpoint{.view = ViewAngles{azimuth, 0.3}};

@@ -1,4 +1,4 @@
-#include "render/figure.h"
+#include "render/drawn_character.h"
 
 #include <algorithm>
 #include <cmath>
@@ -145,7 +145,7 @@ std::vector<Rgba> bone_colors(const Shot& shot) {
 
 }  // namespace
 
-Figure::Figure(const Shot& shot, const Overlays& overlays)
+DrawnCharacter::DrawnCharacter(const Shot& shot, const Overlays& overlays)
     : shot_(shot),
       world_from_file_(file_to_world(shot)),
       joint_nodes_(joint_nodes(shot)),
@@ -163,18 +163,18 @@ Figure::Figure(const Shot& shot, const Overlays& overlays)
     hips_.push_back(world_from_file_ * world(static_cast<int>(frame))[joint_nodes_.front()].translation());
 }
 
-std::vector<Affine> Figure::world(int frame) const {
+std::vector<Affine> DrawnCharacter::world(int frame) const {
   return world_transforms(shot_.character->skeleton, shot_.clip->frames[frame]);
 }
 
-std::vector<Vec3> Figure::joints(int frame) const {
+std::vector<Vec3> DrawnCharacter::joints(int frame) const {
   const std::vector<Affine> file_from_node = world(frame);
   std::vector<Vec3> places;
   for (const int node : joint_nodes_) places.push_back(world_from_file_ * file_from_node[node].translation());
   return places;
 }
 
-Vec3 Figure::facing(int frame) const {
+Vec3 DrawnCharacter::facing(int frame) const {
   if (shot_.humanoid == nullptr) return Vec3::Zero();
   const int node = shot_.humanoid->segments[index(Segment::pelvis)].node();
   if (node < 0) return Vec3::Zero();
@@ -185,7 +185,7 @@ Vec3 Figure::facing(int frame) const {
   return forward.norm() > 0.1 ? Vec3(forward.normalized()) : Vec3(Vec3::Zero());
 }
 
-Geometry Figure::body(int frame) const {
+Geometry DrawnCharacter::body(int frame) const {
   Geometry geometry;
   const std::vector<Affine> file_from_node = world(frame);
   if (mesh_)
@@ -197,7 +197,7 @@ Geometry Figure::body(int frame) const {
   return geometry;
 }
 
-Geometry Figure::ghost(int frame) const {
+Geometry DrawnCharacter::ghost(int frame) const {
   Geometry geometry = body(frame);
   for (Piece& piece : geometry.pieces) {
     piece.surface.alpha = Material::Alpha::blend;
@@ -209,7 +209,7 @@ Geometry Figure::ghost(int frame) const {
   return geometry;
 }
 
-FrameGeometry Figure::geometry(int frame) const {
+FrameGeometry DrawnCharacter::geometry(int frame) const {
   FrameGeometry result{body(frame)};
   if (mesh_ && shapes_) add_shapes(result.overlay, frame, kOverlayAlpha);
   add_props(result.solid, frame);
@@ -219,7 +219,7 @@ FrameGeometry Figure::geometry(int frame) const {
   return result;
 }
 
-void Figure::add_mesh(Geometry& geometry, const std::vector<Affine>& file_from_node) const {
+void DrawnCharacter::add_mesh(Geometry& geometry, const std::vector<Affine>& file_from_node) const {
   const Character& character = *shot_.character;
   // Blended surfaces last: they are seen through.
   for (const bool blended : {false, true})
@@ -237,7 +237,7 @@ void Figure::add_mesh(Geometry& geometry, const std::vector<Affine>& file_from_n
     }
 }
 
-void Figure::add_shapes(Geometry& geometry, int frame, float alpha) const {
+void DrawnCharacter::add_shapes(Geometry& geometry, int frame, float alpha) const {
   Surface surface;
   surface.alpha = alpha < 1.0f ? Material::Alpha::blend : Material::Alpha::opaque;
   surface.takes_shadow = alpha >= 1.0f;
@@ -257,12 +257,12 @@ void Figure::add_shapes(Geometry& geometry, int frame, float alpha) const {
 }
 
 /// Nodes that only place the figure in the file are no bones.
-bool Figure::is_above_figure(int node) const {
+bool DrawnCharacter::is_above_figure(int node) const {
   const int root = shot_.humanoid != nullptr ? shot_.humanoid->root : -1;
   return root >= 0 && node != root && shot_.character->skeleton.is_ancestor(node, root);
 }
 
-void Figure::add_bones(Geometry& geometry, const std::vector<Affine>& file_from_node) const {
+void DrawnCharacter::add_bones(Geometry& geometry, const std::vector<Affine>& file_from_node) const {
   const Skeleton& skeleton = shot_.character->skeleton;
   const auto place = [&](int node) { return Vec3(world_from_file_ * file_from_node[node].translation()); };
   const auto add_bone = [&](int node, const Vec3& to) {
@@ -288,7 +288,7 @@ void Figure::add_bones(Geometry& geometry, const std::vector<Affine>& file_from_
 }
 
 /// Bones show no head: an egg of natural size in its place.
-void Figure::add_head(Geometry& geometry, const std::vector<Affine>& file_from_node) const {
+void DrawnCharacter::add_head(Geometry& geometry, const std::vector<Affine>& file_from_node) const {
   if (shot_.humanoid == nullptr) return;
   const int node = shot_.humanoid->segments[index(Segment::head)].node();
   if (node < 0) return;
@@ -300,7 +300,7 @@ void Figure::add_head(Geometry& geometry, const std::vector<Affine>& file_from_n
               0.078 * size, 0.075 * size, kMiddle);
 }
 
-void Figure::add_props(Geometry& geometry, int frame) const {
+void DrawnCharacter::add_props(Geometry& geometry, int frame) const {
   if (shot_.props == nullptr) return;
   for (const Prop& prop : *shot_.props) {
     if (prop.poses.empty()) continue;

@@ -1,4 +1,4 @@
-#include "render/figure.h"
+#include "render/drawn_character.h"
 
 #include <gtest/gtest.h>
 
@@ -32,9 +32,9 @@ struct Arm {
   }
 };
 
-TEST(Figure, skins_as_the_formula_says) {
+TEST(DrawnCharacter, skins_as_the_formula_says) {
   const Arm arm;
-  const Geometry body = Figure(arm.shot, {}).body(0);
+  const Geometry body = DrawnCharacter(arm.shot, {}).body(0);
   ASSERT_EQ(body.vertices.size(), 3u);
   // A quarter turn about z at (0, 1, 0) takes (1, 1.5) to (-0.5, 2).
   const Eigen::Vector3f still(1.0f, 1.5f, 0.0f);
@@ -45,84 +45,85 @@ TEST(Figure, skins_as_the_formula_says) {
   EXPECT_LT((body.vertices[1].normal.normalized() - Eigen::Vector3f::UnitY()).norm(), 1e-6f);
 }
 
-TEST(Figure, stands_in_metres_with_y_up) {
+TEST(DrawnCharacter, stands_in_metres_with_y_up) {
   Arm arm;
   arm.character.metres_per_unit = 0.01;
   arm.character.yup_from_file = Quat(Eigen::AngleAxisd(-0.5 * kPi, Vec3::UnitX()));
-  const Figure figure(arm.shot, {});
+  const DrawnCharacter figure(arm.shot, {});
   EXPECT_LT((figure.body(0).vertices[0].position - Eigen::Vector3f(0.01f, 0.0f, -0.015f)).norm(), 1e-7f);
   EXPECT_LT((figure.joints(0)[1] - Vec3(0.0, 0.0, -0.01)).norm(), 1e-12);
 }
 
-TEST(Figure, hangs_rigid_parts_on_their_nodes) {
+TEST(DrawnCharacter, hangs_rigid_parts_on_their_nodes) {
   Arm arm;
   arm.character.parts[0].skin = -1;
   arm.character.parts[0].node = 1;
-  const Geometry body = Figure(arm.shot, {}).body(0);
+  const Geometry body = DrawnCharacter(arm.shot, {}).body(0);
   for (const Vertex& vertex : body.vertices)
     EXPECT_LT((vertex.position - Eigen::Vector3f(-1.5f, 2.0f, 0.0f)).norm(), 1e-6f);
 }
 
-TEST(Figure, keeps_normals_perpendicular_under_uneven_scale) {
+TEST(DrawnCharacter, keeps_normals_perpendicular_under_uneven_scale) {
   Arm arm;
   arm.character.parts[0].skin = -1;
   arm.character.parts[0].node = 0;
   arm.character.parts[0].normals.assign(3, Eigen::Vector3f(1.0f, 1.0f, 0.0f));
   arm.clip.frames[0][0].scale = {2.0, 1.0, 1.0};
-  const Eigen::Vector3f normal = Figure(arm.shot, {}).body(0).vertices[0].normal;
+  const Eigen::Vector3f normal = DrawnCharacter(arm.shot, {}).body(0).vertices[0].normal;
   // The plane's direction (1, -1, 0) becomes (2, -1, 0).
   EXPECT_NEAR(normal.dot(Eigen::Vector3f(2.0f, -1.0f, 0.0f)), 0.0f, 1e-6f);
 }
 
-TEST(Figure, says_when_a_part_is_mirrored) {
+TEST(DrawnCharacter, says_when_a_part_is_mirrored) {
   Arm arm;
-  EXPECT_FALSE(Figure(arm.shot, {}).body(0).pieces.at(0).surface.mirrored);
+  EXPECT_FALSE(DrawnCharacter(arm.shot, {}).body(0).pieces.at(0).surface.mirrored);
   arm.clip.frames[0][0].scale = {-1.0, 1.0, 1.0};
-  EXPECT_TRUE(Figure(arm.shot, {}).body(0).pieces.at(0).surface.mirrored);
+  EXPECT_TRUE(DrawnCharacter(arm.shot, {}).body(0).pieces.at(0).surface.mirrored);
 }
 
-TEST(Figure, without_mesh_and_body_is_drawn_as_bones) {
+TEST(DrawnCharacter, without_mesh_and_body_is_drawn_as_bones) {
   Arm arm;
   arm.character.parts.clear();
-  const Geometry body = Figure(arm.shot, {}).body(0);
+  const Geometry body = DrawnCharacter(arm.shot, {}).body(0);
   ASSERT_FALSE(body.indices.empty());
   float top = 0.0f;
   for (const Vertex& vertex : body.vertices) top = std::max(top, vertex.position.y());
   EXPECT_NEAR(top, 1.0f, 1e-5f);
 }
 
-TEST(Figure, draws_no_bone_from_the_file_s_origin_to_the_hips) {
+TEST(DrawnCharacter, draws_no_bone_from_the_file_s_origin_to_the_hips) {
   Arm arm;
   arm.character.parts.clear();
   Humanoid humanoid;
   humanoid.root = 1;
   arm.shot.humanoid = &humanoid;
-  EXPECT_TRUE(Figure(arm.shot, {}).body(0).indices.empty());
+  EXPECT_TRUE(DrawnCharacter(arm.shot, {}).body(0).indices.empty());
   humanoid.root = 0;
-  EXPECT_FALSE(Figure(arm.shot, {}).body(0).indices.empty());
+  EXPECT_FALSE(DrawnCharacter(arm.shot, {}).body(0).indices.empty());
 }
 
-TEST(Figure, of_a_skin_without_joints_stays_on_its_node) {
+TEST(DrawnCharacter, of_a_skin_without_joints_stays_on_its_node) {
   Arm arm;
   arm.character.skins[0].joints.clear();
   arm.character.parts[0].node = 0;
   arm.character.parts[0].joints.clear();
-  EXPECT_LT((Figure(arm.shot, {}).body(0).vertices[0].position - Eigen::Vector3f(1.0f, 1.5f, 0.0f)).norm(),
-            1e-6f);
+  EXPECT_LT(
+      (DrawnCharacter(arm.shot, {}).body(0).vertices[0].position - Eigen::Vector3f(1.0f, 1.5f, 0.0f)).norm(),
+      1e-6f);
 }
 
-TEST(Figure, shows_segments_instead_of_bones_and_over_a_mesh) {
+TEST(DrawnCharacter, shows_segments_instead_of_bones_and_over_a_mesh) {
   Arm arm;
   ArticulatedBody body;
   body.segments[0].shapes = {{ShapeKind::capsule, {}, 0.1, 0.5, Vec3::Zero()}};
   const std::vector<BodyPose> segments(1);
   arm.shot.body = &body;
   arm.shot.segments = &segments;
-  EXPECT_TRUE(Figure(arm.shot, {}).geometry(0).overlay.indices.empty());
-  EXPECT_FALSE(Figure(arm.shot, {.shapes = true}).geometry(0).overlay.indices.empty());
+  EXPECT_TRUE(DrawnCharacter(arm.shot, {}).geometry(0).overlay.indices.empty());
+  EXPECT_FALSE(DrawnCharacter(arm.shot, {.shapes = true}).geometry(0).overlay.indices.empty());
 
   arm.character.parts.clear();
-  const FrameGeometry alone = Figure(arm.shot, {}).geometry(0);
+  const FrameGeometry alone = DrawnCharacter(arm.shot, {}).geometry(0);
   EXPECT_TRUE(alone.overlay.indices.empty());
   float top = 0.0f;
   for (const Vertex& vertex : alone.solid.vertices) top = std::max(top, vertex.position.y());
@@ -139,7 +140,7 @@ TEST(Geometry, pieces_cover_the_indices_in_order) {
   props[1].poses.resize(1);
   Shot shot = arm.shot;
   shot.props = &props;
-  const Geometry solid = Figure(shot, {}).geometry(0).solid;
+  const Geometry solid = DrawnCharacter(shot, {}).geometry(0).solid;
   ASSERT_EQ(solid.pieces.size(), 3u);
   std::uint32_t next = 0;
   for (const Piece& piece : solid.pieces) {

@@ -1,4 +1,4 @@
-#include "humanoid/figure.h"
+#include "humanoid/landmarks.h"
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ Vec3 dominant_axis(const Vec3& v) {
 namespace {
 
 /// Every limb bone has a length to speak of.
-bool has_limbs(const Figure& f) {
+bool has_limbs(const Landmarks& f) {
   const double least = 0.005 * f.rise().norm();
   for (int side = 0; side < 2; ++side)
     for (const Vec3& link : {f.link(kThigh[side], kShank[side]), f.link(kShank[side], kFoot[side]),
@@ -24,7 +24,7 @@ bool has_limbs(const Figure& f) {
 
 }  // namespace
 
-bool humanlike(const Figure& f) {
+bool humanlike(const Landmarks& f) {
   if (!has_limbs(f)) return false;
   const Vec3 trunk = f.shoulders() - f.hips();
   const Vec3 across_hips = f.link(Segment::thigh_l, Segment::thigh_r);
@@ -34,7 +34,7 @@ bool humanlike(const Figure& f) {
          std::abs(angle(trunk, across_hips) - radians(90)) < radians(45);
 }
 
-bool usable(const Figure& f) {
+bool usable(const Landmarks& f) {
   if (!humanlike(f)) return false;
   const Vec3 trunk = f.shoulders() - f.hips();
   if (angle(f.link(Segment::thigh_l, Segment::thigh_r), f.link(Segment::upperarm_l, Segment::upperarm_r)) >
@@ -50,7 +50,7 @@ bool usable(const Figure& f) {
   return true;
 }
 
-double leg_tilt(const Figure& f, const Vec3& up) {
+double leg_tilt(const Landmarks& f, const Vec3& up) {
   double worst = 0.0;
   for (int side = 0; side < 2; ++side)
     for (const Vec3& link : {f.link(kThigh[side], kShank[side]), f.link(kShank[side], kFoot[side])})
@@ -58,7 +58,7 @@ double leg_tilt(const Figure& f, const Vec3& up) {
   return worst;
 }
 
-double neutrality(const Figure& f, const Vec3& up) {
+double neutrality(const Landmarks& f, const Vec3& up) {
   double sum = angle(f.shoulders() - f.hips(), up);
   for (int side = 0; side < 2; ++side) {
     sum += angle(f.link(kThigh[side], kShank[side]), -up) + angle(f.link(kShank[side], kFoot[side]), -up);
@@ -68,7 +68,7 @@ double neutrality(const Figure& f, const Vec3& up) {
   return sum;
 }
 
-RestPoseClass class_of(const Figure& f, const Vec3& up) {
+RestPoseClass class_of(const Landmarks& f, const Vec3& up) {
   double lowest = kPi, highest = 0.0;
   for (int side = 0; side < 2; ++side) {
     const double arm = angle(f.link(kUpperArm[side], kForearm[side]), -up);
@@ -85,7 +85,7 @@ RestPoseClass class_of(const Figure& f, const Vec3& up) {
   return highest < radians(30) ? RestPoseClass::neutral : RestPoseClass::other;
 }
 
-bool exact_t_pose(const Figure& f, const Vec3& up) {
+bool exact_t_pose(const Landmarks& f, const Vec3& up) {
   if (leg_tilt(f, up) > radians(8)) return false;
   const Vec3 across = f.link(Segment::thigh_l, Segment::thigh_r);
   for (int side = 0; side < 2; ++side) {

@@ -16,9 +16,9 @@ struct FrameGeometry {
 };
 
 /// Contract: the shot outlives the figure; every frame of the clip has one transform per node.
-class Figure {
+class DrawnCharacter {
  public:
-  Figure(const Shot& shot, const Overlays& overlays);
+  DrawnCharacter(const Shot& shot, const Overlays& overlays);
 
   /// Places of the joints, metres: the humanoid's nodes, else the skins' joints, else all nodes.
   std::vector<Vec3> joints(int frame) const;

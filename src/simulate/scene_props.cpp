@@ -1,4 +1,4 @@
-#include "simulate/stage.h"
+#include "simulate/scene_props.h"
 
 #include <fmt/format.h>
 #include <ode/ode.h>
@@ -40,10 +40,11 @@ double height_on_floor(dGeomID probe) {
 
 }  // namespace
 
-Stage::Stage(OdeWorld& world, Model& model, Collision& collision, const Scene& scene, double gravity)
+SceneProps::SceneProps(OdeWorld& world, Model& model, Collision& collision, const Scene& scene,
+                       double gravity)
     : world_(world), model_(model), collision_(collision), scene_(scene), gravity_(gravity) {}
 
-void Stage::begin(Diagnostics& diagnostics) {
+void SceneProps::begin(Diagnostics& diagnostics) {
   impact_point_ = vec3(dBodyGetPosition(target().id));
   switch (scene_.kind) {
     case SceneKind::ball:
@@ -62,7 +63,7 @@ void Stage::begin(Diagnostics& diagnostics) {
 
 /// A line that leads into the floor is raised until the probe, where it first touches the body, is clear of
 /// it.
-std::optional<Stage::Meeting> Stage::meet(dGeomID probe, Vec3 start) const {
+std::optional<SceneProps::Meeting> SceneProps::meet(dGeomID probe, Vec3 start) const {
   constexpr int kTries = 12;
   const Vec3& along = scene_.direction;
   std::optional<Meeting> meeting;
@@ -79,7 +80,7 @@ std::optional<Stage::Meeting> Stage::meet(dGeomID probe, Vec3 start) const {
 
 /// Aimed at the target's centre, or beside it by the scene's offset; where another segment is in the way the
 /// aim moves away from it, by at most the missile's radius.
-Vec3 Stage::aim(dGeomID probe, Diagnostics& diagnostics) const {
+Vec3 SceneProps::aim(dGeomID probe, Diagnostics& diagnostics) const {
   constexpr int kTries = 12;
   const Vec3& along = scene_.direction;
   const Vec3 centre = vec3(dBodyGetPosition(target().id)) + scene_.aim_offset;
@@ -98,8 +99,8 @@ Vec3 Stage::aim(dGeomID probe, Diagnostics& diagnostics) const {
   return first->at;
 }
 
-void Stage::launch(dGeomID geom, const Vec3& at, const Vec3& velocity, const Vec3& angular_velocity,
-                   const Quat& rotation) {
+void SceneProps::launch(dGeomID geom, const Vec3& at, const Vec3& velocity, const Vec3& angular_velocity,
+                        const Quat& rotation) {
   const dBodyID body = dBodyCreate(world_.id());
   const double r = scene_.ball_radius_m;
   const bool box = dGeomGetClass(geom) == dBoxClass;
@@ -123,7 +124,7 @@ void Stage::launch(dGeomID geom, const Vec3& at, const Vec3& velocity, const Vec
   impact_point_ = at + r * velocity.normalized();
 }
 
-void Stage::begin_missile(Diagnostics& diagnostics) {
+void SceneProps::begin_missile(Diagnostics& diagnostics) {
   const double r = scene_.ball_radius_m;
   const bool box = scene_.kind == SceneKind::box;
   const dGeomID geom = box ? dCreateBox(nullptr, 2.0 * r, 2.0 * r, 2.0 * r) : dCreateSphere(nullptr, r);
@@ -137,7 +138,7 @@ void Stage::begin_missile(Diagnostics& diagnostics) {
 
 /// A ramp whose foot lies where the ball, rolling down without slipping, meets the body. From rest the ball
 /// would need v^2 = 10/7 g (height); the ramp that stands there is at most 3 m long.
-void Stage::begin_slope(Diagnostics& diagnostics) {
+void SceneProps::begin_slope(Diagnostics& diagnostics) {
   const double r = scene_.ball_radius_m;
   const Vec3 flat = Vec3(scene_.direction.x(), 0.0, scene_.direction.z()).normalized();
   const Vec3 down = std::cos(scene_.slope_rad) * flat - std::sin(scene_.slope_rad) * Vec3::UnitY();
@@ -172,7 +173,7 @@ void Stage::begin_slope(Diagnostics& diagnostics) {
   props_.push_back(prop);
 }
 
-void Stage::begin_impulse() {
+void SceneProps::begin_impulse() {
   RigidState state = read_state(target().id);
   state.linear_velocity += scene_.impulse_n_s / target().mass_kg * scene_.direction;
   write_state(target().id, state);
@@ -180,7 +181,7 @@ void Stage::begin_impulse() {
 }
 
 /// Turns the whole body about the ground below its centre of mass, and lifts it.
-void Stage::begin_fall() {
+void SceneProps::begin_fall() {
   Vec3 centre = Vec3::Zero();
   double mass = 0.0;
   for (const ModelBody& body : model_.bodies()) {
@@ -202,18 +203,18 @@ void Stage::begin_fall() {
   impact_point_ = centre + scene_.fall_height_m * Vec3::UnitY();
 }
 
-void Stage::apply(double time_s) const {
+void SceneProps::apply(double time_s) const {
   if (!pushing(time_s)) return;
   const Vec3 force = scene_.push_force_n * scene_.direction;
   dBodyAddForce(target().id, force.x(), force.y(), force.z());
 }
 
-double Stage::work(double time_s, double h) const {
+double SceneProps::work(double time_s, double h) const {
   if (!pushing(time_s)) return 0.0;
   return h * scene_.push_force_n * std::max(0.0, scene_.direction.dot(vec3(dBodyGetLinearVel(target().id))));
 }
 
-double Stage::prop_energy() const {
+double SceneProps::prop_energy() const {
   double energy = 0.0;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const RigidState state = read_state(bodies_[i]);

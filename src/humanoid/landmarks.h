@@ -22,11 +22,11 @@ inline constexpr std::array<Segment, 2> kFoot = {Segment::foot_l, Segment::foot_
 inline double angle(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 /// Joint places of one pose, file units.
-struct Figure {
+struct Landmarks {
   PerSegment<Vec3> origin;
   std::vector<Affine> world;
 
-  Figure(const Character& character, const Humanoid& humanoid, const Pose& pose)
+  Landmarks(const Character& character, const Humanoid& humanoid, const Pose& pose)
       : world(world_transforms(character.skeleton, pose)) {
     origin = origins_of(humanoid, world);
   }
@@ -42,17 +42,17 @@ struct Figure {
 Vec3 dominant_axis(const Vec3& v);
 
 /// A trunk that rises from the legs, with hips and shoulders across it; limbs may be anywhere.
-bool humanlike(const Figure& f);
+bool humanlike(const Landmarks& f);
 /// A pose from which frames can be read, whatever its orientation: humanlike, no limb folded, arms not
 /// overhead.
-bool usable(const Figure& f);
+bool usable(const Landmarks& f);
 /// Largest tilt of a thigh or shank from the vertical, radians.
-double leg_tilt(const Figure& f, const Vec3& up);
+double leg_tilt(const Landmarks& f, const Vec3& up);
 /// Tilts of trunk, thighs, shanks and half those of the arms, radians: 0 for the neutral pose.
-double neutrality(const Figure& f, const Vec3& up);
-RestPoseClass class_of(const Figure& f, const Vec3& up);
+double neutrality(const Landmarks& f, const Vec3& up);
+RestPoseClass class_of(const Landmarks& f, const Vec3& up);
 /// A frame that a capture system put there on purpose: upright, legs straight down, arms straight to the
 /// sides.
-bool exact_t_pose(const Figure& f, const Vec3& up);
+bool exact_t_pose(const Landmarks& f, const Vec3& up);
 
 }  // namespace ukemi

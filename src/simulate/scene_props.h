@@ -11,9 +11,9 @@
 namespace ukemi {
 
 /// The scene in the world. Time 0 is the first contact: whatever hits starts touching.
-class Stage {
+class SceneProps {
  public:
-  Stage(OdeWorld& world, Model& model, Collision& collision, const Scene& scene, double gravity);
+  SceneProps(OdeWorld& world, Model& model, Collision& collision, const Scene& scene, double gravity);
 
   /// Puts the props in place and gives the body what it gets at once.
   void begin(Diagnostics& diagnostics);

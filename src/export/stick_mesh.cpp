@@ -1,4 +1,4 @@
-#include "export/figure.h"
+#include "export/stick_mesh.h"
 
 #include <algorithm>
 
@@ -10,16 +10,16 @@ constexpr double kWidthShare = 0.13;  // of the bone's length, from the axis to 
 constexpr double kWidthMax = 0.035;   // of the body height
 constexpr double kShortest = 0.005;   // of the body height: shorter bones have no shape
 
-void add_triangle(Figure& figure, int node, const Vec3& a, const Vec3& b, const Vec3& c) {
+void add_triangle(StickMesh& mesh, int node, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Eigen::Vector3f normal = (b - a).cross(c - a).normalized().cast<float>();
   for (const Vec3& point : {a, b, c}) {
-    figure.positions.push_back(point.cast<float>());
-    figure.normals.push_back(normal);
-    figure.nodes.push_back(node);
+    mesh.positions.push_back(point.cast<float>());
+    mesh.normals.push_back(normal);
+    mesh.nodes.push_back(node);
   }
 }
 
-void add_bone(Figure& figure, int node, const Vec3& from, const Vec3& to, double height) {
+void add_bone(StickMesh& mesh, int node, const Vec3& from, const Vec3& to, double height) {
   const Vec3 along = to - from;
   const double length = along.norm();
   if (!(length > kShortest * height)) return;
@@ -30,14 +30,14 @@ void add_bone(Figure& figure, int node, const Vec3& from, const Vec3& to, double
   const Vec3 ring[4] = {middle + width * side, middle + width * front, middle - width * side,
                         middle - width * front};
   for (int i = 0; i < 4; ++i) {
-    add_triangle(figure, node, from, ring[(i + 1) % 4], ring[i]);
-    add_triangle(figure, node, to, ring[i], ring[(i + 1) % 4]);
+    add_triangle(mesh, node, from, ring[(i + 1) % 4], ring[i]);
+    add_triangle(mesh, node, to, ring[i], ring[(i + 1) % 4]);
   }
 }
 
 }  // namespace
 
-Figure make_figure(const Character& character, const Humanoid& humanoid) {
+StickMesh make_stick_mesh(const Character& character, const Humanoid& humanoid) {
   const Skeleton& skeleton = character.skeleton;
   const bool has_reference = humanoid.reference.size() == skeleton.nodes.size();
   const auto bind = world_transforms(skeleton, has_reference ? humanoid.reference : rest_pose(skeleton));
@@ -45,20 +45,20 @@ Figure make_figure(const Character& character, const Humanoid& humanoid) {
   Eigen::AlignedBox3d box;
   for (const Affine& node : bind) box.extend(node.translation().matrix());
   const double height = box.sizes().maxCoeff();
-  Figure figure;
+  StickMesh mesh;
   for (int node = 0; node < skeleton.size(); ++node) {
     const Vec3 from = bind[node].translation();
-    figure.inverse_bind.push_back(bind[node].inverse());
-    for (const int child : below[node]) add_bone(figure, node, from, bind[child].translation(), height);
+    mesh.inverse_bind.push_back(bind[node].inverse());
+    for (const int child : below[node]) add_bone(mesh, node, from, bind[child].translation(), height);
     const int parent = skeleton.nodes[node].parent;
     const bool has_end = character.bvh && node < static_cast<int>(character.bvh->end_site.size()) &&
                          character.bvh->end_site[node].has_value();
     if (has_end)
-      add_bone(figure, node, from, bind[node] * *character.bvh->end_site[node], height);
+      add_bone(mesh, node, from, bind[node] * *character.bvh->end_site[node], height);
     else if (below[node].empty() && parent >= 0)
-      add_bone(figure, node, from, from + 0.5 * (from - bind[parent].translation()), height);
+      add_bone(mesh, node, from, from + 0.5 * (from - bind[parent].translation()), height);
   }
-  return figure;
+  return mesh;
 }
 
 }  // namespace ukemi

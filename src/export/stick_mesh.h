@@ -12,7 +12,7 @@ namespace ukemi {
 
 /// Flat-shaded triangles, three vertices each, in file units, in the pose `Humanoid::reference`; each vertex
 /// moves with one node.
-struct Figure {
+struct StickMesh {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<int> nodes;            // per vertex
@@ -21,6 +21,6 @@ struct Figure {
 
 /// An elongated octahedron from every node to each of its children and End Sites. Empty when no bone has a
 /// length.
-Figure make_figure(const Character& character, const Humanoid& humanoid);
+StickMesh make_stick_mesh(const Character& character, const Humanoid& humanoid);
 
 }  // namespace ukemi
