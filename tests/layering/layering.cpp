@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <regex>
 #include <string_view>
@@ -66,6 +67,44 @@ std::vector<Include> includes_of(const fs::path& file) {
   return includes;
 }
 
+struct TypeDefinition {
+  std::string place;    // "stage/file:line"
+  bool shared = false;  // outside an unnamed namespace: one for the whole program
+};
+
+using TypesByName = std::map<std::string, std::vector<TypeDefinition>>;
+
+/// The types that a file defines at the top level of its namespaces, which is where lines start without a
+/// space.
+void find_types(const fs::path& source, const fs::path& file, TypesByName& types) {
+  static const std::regex type(
+      R"((?:struct|class|union|enum(?: class| struct)?) (\w+)(?: final)?(?: ?:(?!:)[^;]*)?(?: \{.*)?)");
+  static const std::regex alias(R"(using (\w+) =.*)");
+  std::ifstream stream(file);
+  std::string text;
+  bool shared = true;
+  for (int line = 1; std::getline(stream, text); ++line) {
+    if (text.starts_with("namespace {")) shared = false;
+    if (text == "}  // namespace") shared = true;
+    std::smatch match;
+    if (std::regex_match(text, match, type) || std::regex_match(text, match, alias))
+      types[match[1]].push_back({fs::relative(file, source).string() + ":" + std::to_string(line), shared});
+  }
+}
+
+void check_types(const TypesByName& types, LayeringReport& report) {
+  for (const auto& [name, definitions] : types) {
+    report.types += static_cast<int>(definitions.size());
+    if (definitions.size() < 2) continue;
+    const auto first =
+        std::find_if(definitions.begin(), definitions.end(), [](const auto& d) { return d.shared; });
+    if (first == definitions.end()) continue;
+    for (const TypeDefinition& other : definitions)
+      if (&other != &*first)
+        report.violations.push_back(other.place + ": " + name + " is defined in " + first->place + " too");
+  }
+}
+
 std::optional<std::size_t> rank_of(std::string_view stage) {
   const auto found = std::find(std::begin(kStages), std::end(kStages), stage);
   if (found == std::end(kStages)) return std::nullopt;
@@ -108,7 +147,7 @@ void check_file(const fs::path& source, const fs::path& file, LayeringReport& re
   const fs::path relative = fs::relative(file, source);
   const std::string extension = file.extension().string();
   const std::string stage = relative.begin()->string();
-  if (extension == ".txt" || extension == ".md" || extension == ".in") return;
+  if (extension == ".txt" || extension == ".md" || extension == ".in" || extension == ".cmake") return;
   if (extension != ".h" && extension != ".cpp") {
     report.violations.push_back(relative.string() + ": is neither .h nor .cpp");
     return;
@@ -133,7 +172,12 @@ LayeringReport check_layering(const fs::path& source) {
     if (entry.is_regular_file()) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   LayeringReport report;
-  for (const fs::path& file : files) check_file(source, file, report);
+  TypesByName types;
+  for (const fs::path& file : files) {
+    check_file(source, file, report);
+    find_types(source, file, types);
+  }
+  check_types(types, report);
   return report;
 }
 

@@ -10,6 +10,7 @@ namespace ukemi {
 struct LayeringReport {
   int files = 0;                        // .h and .cpp files read
   int includes = 0;                     // #include lines looked at
+  int types = 0;                        // struct, class, enum, union and alias definitions of a namespace
   std::vector<std::string> violations;  // "stage/file:line: what"
 };
 
@@ -20,6 +21,8 @@ struct LayeringReport {
 /// 3. Project headers are named by their folder and exist; every other header is the standard's or the
 /// system's.
 /// 4. Every folder is a known stage and every source file is a .h or a .cpp.
+/// 5. A type that is defined outside an unnamed namespace has a name that no other type has (the one
+/// definition rule; a compiler sees one file at a time and says nothing).
 LayeringReport check_layering(const std::filesystem::path& source);
 
 }  // namespace ukemi

@@ -35,6 +35,7 @@ TEST(Layering, HoldsInTheWholeSourceTree) {
   EXPECT_EQ(report.violations, Strings{});
   EXPECT_GT(report.files, 20);
   EXPECT_GT(report.includes, 100);
+  EXPECT_GT(report.types, 200);
 }
 
 TEST(Layering, ReportsALaterStageByFileAndLine) {
@@ -79,6 +80,26 @@ TEST(Layering, ReportsUnknownHeadersFoldersAndFiles) {
       (Strings{"base/math.h:1: name result.h by its stage's folder",
                "base/math.h:2: base/gone.h does not exist", "base/math.h:3: unknown header boost/any.hpp",
                "helpers/text.h: helpers is not a known stage", "load/read.hpp: is neither .h nor .cpp"}));
+}
+
+TEST(Layering, ReportsATypeThatIsDefinedTwice) {
+  const Tree tree;
+  tree.add("base/a.h", "namespace ukemi {\nstruct Figure {\n};\nenum class Kind : int { one };\n}\n");
+  tree.add("base/b.cpp",
+           "namespace ukemi {\nnamespace {\nclass Figure final {\n};\nstruct Local {};\n"
+           "}  // namespace\nusing Kind = int;\n}\n");
+  tree.add("load/c.h", "struct Figure : Base {\n};\nstruct Kind;\n");
+  EXPECT_EQ(tree.violations(), (Strings{"base/b.cpp:3: Figure is defined in base/a.h:2 too",
+                                        "load/c.h:1: Figure is defined in base/a.h:2 too",
+                                        "base/b.cpp:7: Kind is defined in base/a.h:4 too"}));
+}
+
+TEST(Layering, LetsFilesHaveTypesOfTheirOwnWithTheSameName) {
+  const Tree tree;
+  for (const char* file : {"base/a.cpp", "base/b.cpp"})
+    tree.add(file, "namespace ukemi {\nnamespace {\nstruct Key {};\n}  // namespace\n}\nstruct Other;\n");
+  EXPECT_EQ(tree.violations(), Strings{});
+  EXPECT_EQ(tree.check().types, 2);
 }
 
 TEST(Layering, CountsTheFilesAndIncludesItLookedAt) {
