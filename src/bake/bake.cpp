@@ -8,19 +8,22 @@
 
 #include "bake/append.h"
 #include "bake/clip_timing.h"
-#include "bake/frames.h"
-#include "bake/ground_motion.h"
+#include "bake/exported_clip.h"
 #include "bake/impact.h"
 #include "bake/outputs.h"
 #include "bake/report.h"
 #include "bake/settings.h"
 #include "bake/sheet.h"
-#include "bake/smooth.h"
+#include "bake/start.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "body/ground.h"
+#include "clip/frames.h"
+#include "clip/ground_motion.h"
+#include "clip/smooth.h"
 #include "export/additive.h"
 #include "humanoid/rotations.h"
+#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -199,13 +202,6 @@ Status check_combinations(const BakeSettings& settings) {
 }
 
 }  // namespace
-
-Result<fs::path> character_path(const std::string& character) {
-  if (character == "mannequin") return find_asset("characters/mannequin.glb");
-  return fs::path(character);
-}
-
-std::string generator() { return std::string("ukemi ") + UKEMI_VERSION; }
 
 std::string reaction_name(const BakeSettings& settings) {
   if (!settings.reaction.empty()) return settings.reaction;

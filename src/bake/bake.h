@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "bake/start.h"
 #include "base/character.h"
 #include "base/files.h"
 #include "base/result.h"
 #include "body/body.h"
+#include "clip/resample.h"
+#include "clip/start.h"
 #include "export/export.h"
 #include "humanoid/humanoid.h"
 #include "render/render.h"
-#include "resample/resample.h"
 #include "restrict/range_of_motion.h"
 #include "simulate/simulate.h"
 
@@ -113,12 +113,6 @@ struct BakedFile {
   std::vector<OutputFile> files;  // clips and pictures
   std::string report;             // JSON, format 1
 };
-
-/// "mannequin" is the program's own character, everything else a file.
-Result<std::filesystem::path> character_path(const std::string& character);
-
-/// "ukemi 0.1.0"
-std::string generator();
 
 /// The name a bake's clip gets: that of the settings, else SEGMENT_FROM.
 std::string reaction_name(const BakeSettings& settings);

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "bake/frames.h"
-#include "bake/ground_motion.h"
 #include "body/ground.h"
+#include "clip/frames.h"
+#include "clip/ground_motion.h"
+#include "clip/start.h"
 
 namespace ukemi {
 namespace {

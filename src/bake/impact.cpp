@@ -12,6 +12,7 @@
 #include "base/files.h"
 #include "base/nearest.h"
 #include "base/numbers.h"
+#include "base/parse_segment.h"
 
 namespace ukemi {
 namespace {
@@ -205,13 +206,6 @@ Vec3 travel_direction(const Direction& from, const Quat& world_from_pelvis) {
   const Vec3 flat = std::cos(from.azimuth) * forward + std::sin(from.azimuth) * left;
   const Vec3 origin = std::cos(from.elevation) * flat + std::sin(from.elevation) * Vec3::UnitY();
   return -origin.normalized();
-}
-
-Result<Segment> parse_segment(std::string_view text) {
-  if (const auto segment = segment_named(text)) return *segment;
-  std::vector<std::string> names;
-  for (int i = 0; i < kSegmentCount; ++i) names.emplace_back(name(segment_at(i)));
-  return usage_error(fmt::format("unknown segment '{}'", text), suggestion(text, names));
 }
 
 Result<SceneKind> parse_scene(std::string_view text) {

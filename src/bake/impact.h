@@ -48,7 +48,6 @@ Vec3 travel_direction(const Direction& from, const Quat& world_from_pelvis);
 /// Whether there is a preset of that name. Errors: usage, with the nearest name.
 Status check_preset(const std::string& name);
 
-Result<Segment> parse_segment(std::string_view text);
 Result<SceneKind> parse_scene(std::string_view text);
 std::string_view name(SceneKind scene);
 

@@ -9,6 +9,8 @@
 #include "bake/impact.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "base/parse_segment.h"
+#include "base/segments.h"
 
 namespace ukemi {
 namespace {

@@ -8,9 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "bake/inspect.h"
-#include "bake/start.h"
+#include "base/animation.h"
 #include "base/errors.h"
+#include "base/native_rate.h"
+#include "clip/names.h"
+#include "clip/start.h"
 #include "humanoid/transfer.h"
 #include "load/load.h"
 

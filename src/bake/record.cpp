@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bake/file_names.h"
+#include "base/file_names.h"
 
 namespace ukemi {
 namespace {

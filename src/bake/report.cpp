@@ -6,9 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bake/frames.h"
 #include "bake/impact.h"
-#include "bake/smooth.h"
+#include "base/version.h"
+#include "clip/frames.h"
+#include "clip/smooth.h"
+#include "clip/start.h"
+#include "judge/jerk.h"
 
 namespace ukemi {
 namespace {
@@ -247,22 +250,6 @@ std::string report_json(const std::string& character, const Character& loaded, c
     json["warnings"].push_back(warning.subject.empty() ? warning.what
                                                        : warning.subject + ": " + warning.what);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-JerkPeak largest_jerk(const Clip& clip) {
-  const auto angular_velocity = [&](std::size_t frame, std::size_t node) -> Vec3 {
-    const Quat& from = clip.frames[frame][node].rotation;
-    return log_rotation(from.conjugate() * clip.frames[frame + 1][node].rotation) * clip.fps;
-  };
-  JerkPeak peak;
-  for (std::size_t f = 0; f + 3 < clip.frames.size(); ++f)
-    for (std::size_t n = 0; n < clip.frames[f].size(); ++n) {
-      const Vec3 change =
-          angular_velocity(f + 2, n) - 2.0 * angular_velocity(f + 1, n) + angular_velocity(f, n);
-      const double jerk = degrees(change.norm() * clip.fps * clip.fps);
-      if (jerk > peak.deg_s3) peak = {jerk, static_cast<int>(n), (static_cast<double>(f) + 1.5) / clip.fps};
-    }
-  return peak;
 }
 
 std::string_view name(RootMotion motion) {

@@ -29,16 +29,6 @@ std::string report_json(const std::string& character, const Character& loaded, c
                         const BakeOutcome& outcome, const ReducedClip& reduced,
                         const Diagnostics& diagnostics, const std::vector<Vec3>& root_curve = {});
 
-/// Second difference of a node's local angular velocity between frames.
-struct JerkPeak {
-  double deg_s3 = 0.0;
-  int node = -1;
-  double time_s = 0.0;  // amid the four frames it is taken from
-};
-
-/// The largest jerk of any node; none for clips of fewer than four frames.
-JerkPeak largest_jerk(const Clip& clip);
-
 /// "hips", "root", "in-place".
 std::string_view name(RootMotion motion);
 std::string_view name(Limits limits);

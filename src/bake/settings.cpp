@@ -14,6 +14,8 @@
 #include "bake/map_file.h"
 #include "base/errors.h"
 #include "base/nearest.h"
+#include "base/parse_segment.h"
+#include "base/segments.h"
 
 namespace ukemi {
 namespace {

@@ -7,11 +7,14 @@
 #include <cmath>
 #include <memory>
 
-#include "bake/frames.h"
 #include "bake/impact.h"
 #include "base/errors.h"
 #include "base/numbers.h"
+#include "clip/frames.h"
+#include "clip/names.h"
+#include "clip/start.h"
 #include "humanoid/rotations.h"
+#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "bake/ground_motion.h"
 #include "bake/motion.h"
 #include "base/errors.h"
 #include "base/nearest.h"
+#include "clip/ground_motion.h"
+#include "clip/names.h"
+#include "clip/start.h"
 
 namespace ukemi {
 namespace {
@@ -22,7 +24,6 @@ constexpr double kFastest = 20.0;              // m/s, of a body 1.75 m tall: fa
 constexpr double kFastestTurn = 60.0;          // rad/s
 constexpr double kFloorRate = 30.0;            // samples per second of a clip
 constexpr int kMaxFloorSamples = 600;
-constexpr double kFloorQuantile = 0.05;  // a calibration pose or a slipped frame may lie deeper
 const double kRoundTurn = radians(1.5);  // between the first and the last pose of a cycle
 constexpr double kRoundShift = 0.005;    // of the body height
 constexpr double kShortestRound = 0.2;   // s
@@ -37,13 +38,6 @@ Result<Pose> still_pose(const Character& character, const Humanoid& humanoid, co
   if (names_motion_file(text)) return pose_of_file(character, humanoid, text, diagnostics);
   return usage_error(fmt::format("unknown pose '{}'", text),
                      suggestion(text, {"rest", "stand", "guard"}) + ", or name a .bvh, .glb or .fbx file");
-}
-
-double height_above_floor(const Character& character, const Humanoid& humanoid, const Pose& pose) {
-  const auto pelvis_height = [&](const Pose& p) {
-    return segments_of(character.skeleton, humanoid, p)[index(Segment::pelvis)].translation.y();
-  };
-  return pelvis_height(pose) - pelvis_height(stand_on_floor(character, humanoid, pose));
 }
 
 /// Differences of the segments as the nodes have them (their rolls do not jump) between two times of a clip;
@@ -169,41 +163,6 @@ Result<Start> start_from_motion(const Character& character, const Humanoid& huma
 
 }  // namespace
 
-bool is_motion_only(const Character& character) {
-  if (character.animations.empty()) return false;
-  if (character.format == SourceFormat::bvh) return true;
-  return character.parts.empty() && character.skins.empty() && character.animations.size() == 1;
-}
-
-std::string clip_label(const Character& character, std::size_t clip) {
-  const std::string& name = character.animations[clip].name;
-  return name.empty() ? fmt::format("#{}", clip) : name;
-}
-
-Result<std::size_t> find_clip(const Character& character, std::string_view name) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < character.animations.size(); ++i) {
-    names.push_back(clip_label(character, i));
-    if (names.back() == name) return i;
-  }
-  std::size_t number = 0;
-  const char* end = name.data() + name.size();
-  if (name.size() > 1 && name.front() == '#') {
-    const auto [parsed, error] = std::from_chars(name.data() + 1, end, number);
-    if (error == std::errc() && parsed == end && number < names.size()) return number;
-  }
-  const std::string what = fmt::format("{} has no clip '{}'", character.path.string(), name);
-  return usage_error(what, names.empty() ? "the file holds no clips; use --pose" : suggestion(name, names));
-}
-
-double floor_of(const Character& character, const Humanoid& humanoid, const std::vector<Pose>& poses) {
-  std::vector<double> heights;
-  for (const Pose& pose : poses) heights.push_back(height_above_floor(character, humanoid, pose));
-  const auto rank = static_cast<std::ptrdiff_t>(kFloorQuantile * static_cast<double>(heights.size() - 1));
-  std::nth_element(heights.begin(), heights.begin() + rank, heights.end());
-  return heights[static_cast<std::size_t>(rank)];
-}
-
 Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings,
                        Diagnostics& diagnostics) {
   auto motion = motion_of(character, humanoid, settings, diagnostics);
@@ -224,52 +183,6 @@ Result<Start> start_of(const Character& character, const Humanoid& humanoid, con
   start.state.segments = start.segments;
   for (Rigid& segment : start.state.segments) segment.translation.y() -= start.floor_m;
   return start;
-}
-
-Pose unhit_pose(const Skeleton& skeleton, const Humanoid& humanoid, const Start& start, double time_s) {
-  if (!start.motion || time_s == 0.0) return start.pose;
-  const double at_s = start.at_s + time_s;
-  const double duration_s = start.motion->duration_s();
-  if (!start.round || (at_s >= 0.0 && at_s <= duration_s))
-    return sample(skeleton, *start.motion, start.motion->start_s + at_s);
-  const double rounds = std::floor(at_s / duration_s);
-  const Pose pose = sample(skeleton, *start.motion, start.motion->start_s + at_s - rounds * duration_s);
-  const Rigid step = rounds < 0.0 ? start.round->inverse() : *start.round;
-  Rigid way;
-  for (int i = 0; i < static_cast<int>(std::abs(rounds)); ++i) way = step * way;
-  const BodyPose before = segments_of(skeleton, humanoid, pose);
-  BodyPose after = before;
-  for (Rigid& segment : after) segment = way * segment;
-  return pose_skeleton(skeleton, humanoid, pose, before, after);
-}
-
-double velocity_jump(const Skeleton& skeleton, const Humanoid& humanoid, const Start& start) {
-  if (!start.motion || !(start.motion->duration_s() > 0.0)) return 0.0;
-  const double now = start.motion->start_s + start.at_s;
-  const double before = std::max(start.motion->start_s, now - kVelocityStep);
-  const double after = std::min(start.motion->end_s, now + kVelocityStep);
-  const BodyPose a = segments_of(skeleton, humanoid, sample(skeleton, *start.motion, before));
-  const BodyPose b = segments_of(skeleton, humanoid, sample(skeleton, *start.motion, after));
-  double largest = 0.0;
-  for (int s = 0; s < kSegmentCount; ++s) {
-    const int parent = index(parent_of(segment_at(s)));
-    const Vec3& velocity = start.state.linear_velocity[s];
-    const Vec3 clip_velocity = (b[s].translation - a[s].translation) / (after - before);
-    const Vec3 from_parent = start.segments[s].translation - start.segments[parent].translation;
-    const Vec3 of_parent =
-        start.state.linear_velocity[parent] + start.state.angular_velocity[parent].cross(from_parent);
-    largest = std::max({largest, (velocity - clip_velocity).norm(), (velocity - of_parent).norm()});
-  }
-  return largest;
-}
-
-Pose moved(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose, const Vec3& offset) {
-  const Similarity file_from_world = humanoid.world_from_file.inverse();
-  const Vec3 file_offset = file_from_world.scale * (file_from_world.rotation * offset);
-  Pose result = pose;
-  for (int i = 0; i < skeleton.size(); ++i)
-    if (skeleton.nodes[i].parent < 0) result[i].translation += file_offset;
-  return result;
 }
 
 }  // namespace ukemi

@@ -8,15 +8,15 @@
 #include <string>
 #include <thread>
 
-#include "bake/batch.h"
-#include "bake/manifest.h"
-#include "bake/review.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "batch/batch.h"
+#include "batch/manifest.h"
 #include "cli/batch_progress.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
+#include "review/review.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "bake/batch.h"
+#include "batch/batch.h"
 
 namespace ukemi {
 

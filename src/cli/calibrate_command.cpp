@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "bake/calibrate.h"
 #include "bake/outputs.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "check/calibrate.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"

@@ -7,6 +7,7 @@
 
 #include "bake/bake.h"
 #include "base/nearest.h"
+#include "base/version.h"
 #include "cli/console.h"
 
 namespace ukemi {

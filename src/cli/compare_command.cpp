@@ -8,15 +8,16 @@
 #include <string>
 #include <thread>
 
-#include "bake/compare.h"
-#include "bake/compare_pictures.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
 #include "cli/settings_options.h"
+#include "load/character_path.h"
 #include "load/load.h"
+#include "study/compare.h"
+#include "study/compare_pictures.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;

@@ -1,6 +1,6 @@
 #include <string>
 
-#include "bake/difference.h"
+#include "check/difference.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"

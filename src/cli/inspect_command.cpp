@@ -1,6 +1,6 @@
 #include <string>
 
-#include "bake/inspect.h"
+#include "check/inspect.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"

@@ -1,4 +1,4 @@
-#include "bake/recipe.h"
+#include "batch/recipe.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"

@@ -1,4 +1,4 @@
-#include "bake/review.h"
+#include "review/review.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

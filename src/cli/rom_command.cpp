@@ -5,9 +5,9 @@
 #include <string>
 
 #include "bake/outputs.h"
-#include "bake/rom.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "check/rom.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"

@@ -4,8 +4,10 @@
 
 #include <cmath>
 
-#include "bake/ground_motion.h"
-#include "bake/smooth.h"
+#include "bake/exported_clip.h"
+#include "clip/ground_motion.h"
+#include "clip/smooth.h"
+#include "clip/start.h"
 #include "export/additive.h"
 #include "load/load.h"
 

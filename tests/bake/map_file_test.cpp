@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/inspect.h"
+#include "check/inspect.h"
 
 namespace ukemi {
 namespace {

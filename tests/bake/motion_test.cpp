@@ -6,7 +6,10 @@
 #include <fstream>
 
 #include "bake/bake.h"
+#include "bake/start.h"
 #include "base/files.h"
+#include "clip/names.h"
+#include "clip/start.h"
 #include "load/load.h"
 
 namespace ukemi {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

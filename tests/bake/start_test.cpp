@@ -7,6 +7,9 @@
 
 #include "bake/bake.h"
 #include "bake/report.h"
+#include "clip/names.h"
+#include "clip/start.h"
+#include "judge/jerk.h"
 #include "load/load.h"
 
 namespace ukemi {

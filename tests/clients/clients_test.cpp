@@ -10,8 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/bake.h"
-#include "bake/start.h"
 #include "base/files.h"
+#include "clip/names.h"
+#include "clip/start.h"
 #include "export/export.h"
 #include "load/load.h"
 #include "support/command.h"

@@ -13,12 +13,17 @@ namespace {
 namespace fs = std::filesystem;
 
 // In the order of the pipeline.
-constexpr std::string_view kStages[] = {"base",     "load",   "humanoid", "body", "restrict", "simulate",
-                                        "resample", "export", "render",   "bake", "cli"};
+constexpr std::string_view kRooms[] = {"base",     "load",   "humanoid", "restrict", "body",   "physics",
+                                       "simulate", "behave", "export",   "render",   "clip",   "judge",
+                                       "bake",     "check",  "study",    "batch",    "review", "cli"};
+
+// Rooms that never include each other.
+const std::vector<std::vector<std::string_view>> kApart = {{"export", "render"},
+                                                           {"check", "study", "batch", "review"}};
 
 struct ThirdParty {
-  std::string_view prefix;               // of the header's name
-  std::vector<std::string_view> stages;  // that may include it; empty: all, headers too
+  std::string_view prefix;              // of the header's name
+  std::vector<std::string_view> rooms;  // that may include it; empty: all, headers too
 };
 
 const std::vector<ThirdParty>& third_parties() {
@@ -26,13 +31,13 @@ const std::vector<ThirdParty>& third_parties() {
       {"Eigen/", {}},
       {"unsupported/Eigen/", {}},
       {"fmt/", {}},
-      {"nlohmann/", {"load", "export", "bake"}},
-      {"toml++/", {"restrict", "bake"}},
+      {"nlohmann/", {"load", "export", "clip", "bake", "check", "study", "batch", "review"}},
+      {"toml++/", {"restrict", "bake", "batch"}},
       {"assimp/", {"load"}},
       {"draco/", {"load"}},
       {"meshoptimizer", {"load"}},
-      {"ode/", {"simulate"}},
-      {"openssl/", {"bake"}},
+      {"ode/", {"physics", "simulate"}},
+      {"openssl/", {"base"}},
       {"png.h", {"render"}},
       {"webp/", {"render"}},
       {"ft2build.h", {"render"}},
@@ -68,7 +73,7 @@ std::vector<Include> includes_of(const fs::path& file) {
 }
 
 struct TypeDefinition {
-  std::string place;    // "stage/file:line"
+  std::string place;    // "room/file:line"
   bool shared = false;  // outside an unnamed namespace: one for the whole program
 };
 
@@ -105,10 +110,18 @@ void check_types(const TypesByName& types, LayeringReport& report) {
   }
 }
 
-std::optional<std::size_t> rank_of(std::string_view stage) {
-  const auto found = std::find(std::begin(kStages), std::end(kStages), stage);
-  if (found == std::end(kStages)) return std::nullopt;
-  return static_cast<std::size_t>(found - std::begin(kStages));
+std::optional<std::size_t> rank_of(std::string_view room) {
+  const auto found = std::find(std::begin(kRooms), std::end(kRooms), room);
+  if (found == std::end(kRooms)) return std::nullopt;
+  return static_cast<std::size_t>(found - std::begin(kRooms));
+}
+
+bool are_apart(std::string_view a, std::string_view b) {
+  const auto holds = [](const std::vector<std::string_view>& rooms, std::string_view room) {
+    return std::find(rooms.begin(), rooms.end(), room) != rooms.end();
+  };
+  return a != b && std::any_of(kApart.begin(), kApart.end(),
+                               [&](const auto& rooms) { return holds(rooms, a) && holds(rooms, b); });
 }
 
 bool is_standard_or_system(const std::string& header) {
@@ -118,14 +131,14 @@ bool is_standard_or_system(const std::string& header) {
   return header.find_first_of("./") == std::string::npos;
 }
 
-/// What is wrong with `include` in a file of `stage`, or nothing.
-std::optional<std::string> violation(const fs::path& source, const std::string& stage, bool is_header,
+/// What is wrong with `include` in a file of `room`, or nothing.
+std::optional<std::string> violation(const fs::path& source, const std::string& room, bool is_header,
                                      const Include& include) {
   for (const ThirdParty& party : third_parties()) {
     if (!include.name.starts_with(party.prefix)) continue;
-    if (party.stages.empty()) return std::nullopt;
-    if (std::find(party.stages.begin(), party.stages.end(), stage) == party.stages.end())
-      return stage + " must not include " + include.name;
+    if (party.rooms.empty()) return std::nullopt;
+    if (std::find(party.rooms.begin(), party.rooms.end(), room) == party.rooms.end())
+      return room + " must not include " + include.name;
     if (is_header) return "a header must not include " + include.name;
     return std::nullopt;
   }
@@ -135,31 +148,30 @@ std::optional<std::string> violation(const fs::path& source, const std::string& 
   }
   const std::string target = include.name.substr(0, include.name.find('/'));
   const std::optional<std::size_t> target_rank = rank_of(target);
-  if (!target_rank) return "name " + include.name + " by its stage's folder";
+  if (!target_rank) return "name " + include.name + " by its room's folder";
   if (!fs::exists(source / include.name)) return include.name + " does not exist";
-  const bool siblings =
-      (stage == "export" && target == "render") || (stage == "render" && target == "export");
-  if (*target_rank > *rank_of(stage) || siblings) return stage + " must not include " + include.name;
+  if (*target_rank > *rank_of(room) || are_apart(room, target))
+    return room + " must not include " + include.name;
   return std::nullopt;
 }
 
 void check_file(const fs::path& source, const fs::path& file, LayeringReport& report) {
   const fs::path relative = fs::relative(file, source);
   const std::string extension = file.extension().string();
-  const std::string stage = relative.begin()->string();
+  const std::string room = relative.begin()->string();
   if (extension == ".txt" || extension == ".md" || extension == ".in" || extension == ".cmake") return;
   if (extension != ".h" && extension != ".cpp") {
     report.violations.push_back(relative.string() + ": is neither .h nor .cpp");
     return;
   }
-  if (!rank_of(stage)) {
-    report.violations.push_back(relative.string() + ": " + stage + " is not a known stage");
+  if (!rank_of(room)) {
+    report.violations.push_back(relative.string() + ": " + room + " is not a known room");
     return;
   }
   ++report.files;
   for (const Include& include : includes_of(file)) {
     ++report.includes;
-    if (const auto what = violation(source, stage, extension == ".h", include))
+    if (const auto what = violation(source, room, extension == ".h", include))
       report.violations.push_back(relative.string() + ":" + std::to_string(include.line) + ": " + *what);
   }
 }

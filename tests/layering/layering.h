@@ -11,16 +11,17 @@ struct LayeringReport {
   int files = 0;                        // .h and .cpp files read
   int includes = 0;                     // #include lines looked at
   int types = 0;                        // struct, class, enum, union and alias definitions of a namespace
-  std::vector<std::string> violations;  // "stage/file:line: what"
+  std::vector<std::string> violations;  // "room/file:line: what"
 };
 
-/// Checks every .h and .cpp file below `source` (the folder that holds the stages' folders).
-/// 1. A stage includes itself and earlier stages only; export and render never include each other.
-/// 2. A third party's header appears only in the .cpp files of the stages that may use it; Eigen and fmt
+/// Checks every .h and .cpp file below `source` (the folder that holds the rooms' folders).
+/// 1. A room includes itself and earlier rooms only; export and render never include each other, nor do
+/// check, study, batch and review.
+/// 2. A third party's header appears only in the .cpp files of the rooms that may use it; Eigen and fmt
 /// anywhere.
 /// 3. Project headers are named by their folder and exist; every other header is the standard's or the
 /// system's.
-/// 4. Every folder is a known stage and every source file is a .h or a .cpp.
+/// 4. Every folder is a known room and every source file is a .h or a .cpp.
 /// 5. A type that is defined outside an unnamed namespace has a name that no other type has (the one
 /// definition rule; a compiler sees one file at a time and says nothing).
 LayeringReport check_layering(const std::filesystem::path& source);

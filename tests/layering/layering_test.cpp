@@ -38,7 +38,7 @@ TEST(Layering, HoldsInTheWholeSourceTree) {
   EXPECT_GT(report.types, 200);
 }
 
-TEST(Layering, ReportsALaterStageByFileAndLine) {
+TEST(Layering, ReportsALaterRoomByFileAndLine) {
   const Tree tree;
   tree.add("base/math.h", "#pragma once\n\n#include <Eigen/Core>\n");
   tree.add("simulate/simulate.h", "#include \"base/math.h\"\n");
@@ -54,7 +54,20 @@ TEST(Layering, KeepsExportAndRenderApart) {
                                         "render/render.h:1: render must not include export/export.h"}));
 }
 
-TEST(Layering, ReportsAThirdPartyOutsideItsStageOrInAHeader) {
+TEST(Layering, KeepsTheRoomsBehindABakeApart) {
+  const Tree tree;
+  tree.add("bake/bake.h", "");
+  tree.add("batch/batch.h", "#include \"bake/bake.h\"\n#include \"study/compare.h\"\n");
+  tree.add("check/rom.h", "");
+  tree.add("review/page.h", "#include \"batch/batch.h\"\n#include \"review/mesh.h\"\n");
+  tree.add("review/mesh.h", "");
+  tree.add("study/compare.h", "#include \"check/rom.h\"\n");
+  EXPECT_EQ(tree.violations(), (Strings{"batch/batch.h:2: batch must not include study/compare.h",
+                                        "review/page.h:1: review must not include batch/batch.h",
+                                        "study/compare.h:1: study must not include check/rom.h"}));
+}
+
+TEST(Layering, ReportsAThirdPartyOutsideItsRoomOrInAHeader) {
   const Tree tree;
   tree.add("body/body.cpp",
            "  #  include <ode/ode.h>\n#include \"assimp/scene.h\"\n#include <fmt/format.h>\n");
@@ -77,9 +90,9 @@ TEST(Layering, ReportsUnknownHeadersFoldersAndFiles) {
   tree.add("load/read.hpp", "");
   EXPECT_EQ(
       tree.violations(),
-      (Strings{"base/math.h:1: name result.h by its stage's folder",
+      (Strings{"base/math.h:1: name result.h by its room's folder",
                "base/math.h:2: base/gone.h does not exist", "base/math.h:3: unknown header boost/any.hpp",
-               "helpers/text.h: helpers is not a known stage", "load/read.hpp: is neither .h nor .cpp"}));
+               "helpers/text.h: helpers is not a known room", "load/read.hpp: is neither .h nor .cpp"}));
 }
 
 TEST(Layering, ReportsATypeThatIsDefinedTwice) {

@@ -11,10 +11,11 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "bake/compare.h"
 #include "bake/report.h"
 #include "base/numbers.h"
+#include "load/character_path.h"
 #include "load/load.h"
+#include "study/compare.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Recipes as TOML, and the reactions of those that are accepted.
-#include "bake/recipe.h"
+#include "batch/recipe.h"
 #include "fuzz/checks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

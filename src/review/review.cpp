@@ -1,0 +1,355 @@
+#include "review/review.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "bake/bake.h"
+#include "base/errors.h"
+#include "base/files.h"
+#include "base/version.h"
+#include "review/clip.h"
+#include "review/json.h"
+#include "review/sources.h"
+
+namespace ukemi {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxAssetBytes = 16u << 20;
+constexpr std::size_t kMaxTableBytes = 1u << 30;
+constexpr std::string_view kMarkOfOurPage = "<meta name=\"generator\" content=\"ukemi";
+constexpr const char* kPageFolder = "review";
+constexpr const char* kProgramFiles[] = {"review.js", "review.css"};
+constexpr const char* kTableFile = "reactions.js";
+constexpr const char* kManifestKey = "manifest_sha256";
+constexpr std::size_t kLongestReadableName = 60;
+
+/// What became of one source.
+struct Made {
+  std::optional<ReviewClip> clip;  // without its long texts, which are written
+  std::string clip_file, character_file, thumbnail_light, thumbnail_dark;
+  std::string error;
+  Diagnostics diagnostics;
+};
+
+/// A name that is a file name everywhere and needs no escaping in an address.
+std::string readable(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    if (plain)
+      result += c;
+    else if (!result.ends_with('-'))
+      result += '-';
+  }
+  return result.substr(0, kLongestReadableName);
+}
+
+/// A script that hands `json` to the page under a key.
+std::string script(std::string_view kind, const std::string& key, const std::string& json) {
+  return fmt::format("ukemi.register(\"{}\",\"{}\",{});\n", kind, key, json);
+}
+
+/// The page's folder, and the files that this page put into it.
+class PageFolder {
+ public:
+  explicit PageFolder(fs::path folder) : folder_(std::move(folder)) {}
+
+  /// Errors: output.
+  Status make() {
+    std::error_code error;
+    for (const char* below : {"clips", "characters", "thumbnails"}) {
+      fs::create_directories(folder_ / below, error);
+      if (error)
+        return output_error(folder_ / below, "cannot make the folder: " + error.message(),
+                            "check the folder's permissions");
+    }
+    return Done{};
+  }
+
+  /// Writes a file once; from any thread.
+  template <typename Content>
+  Status write(const std::string& relative, const Content& content) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!written_.insert(relative).second) return Done{};
+    }
+    return write_file(folder_ / relative, content);
+  }
+
+  /// Removes what an earlier page left and this one does not use.
+  void remove_leftovers() const {
+    std::error_code error;
+    for (const char* below : {"clips", "characters", "thumbnails"})
+      for (const auto& entry : fs::directory_iterator(folder_ / below, error))
+        if (!written_.contains(std::string(below) + "/" + entry.path().filename().string()))
+          fs::remove(entry.path(), error);
+  }
+
+ private:
+  fs::path folder_;
+  std::mutex mutex_;
+  std::set<std::string> written_;
+};
+
+/// Whether index.html and the page's folder are free or ours. Errors: output.
+Status check_ours(const fs::path& folder) {
+  const fs::path page = folder / "index.html";
+  std::error_code error;
+  if (fs::exists(page, error)) {
+    const auto bytes = read_file(page, kMaxAssetBytes);
+    const std::string text = bytes ? std::string(bytes->begin(), bytes->end()) : "";
+    if (text.find(kMarkOfOurPage) == std::string::npos)
+      return output_error(page, "is not a page of this program and would be lost", "move it away");
+  } else if (fs::exists(folder / kPageFolder, error) &&
+             !fs::exists(folder / kPageFolder / "review.js", error)) {
+    return output_error(folder / kPageFolder, "is not a folder of this program", "move it away");
+  }
+  return Done{};
+}
+
+Result<std::string> read_asset(const std::string& name) {
+  const auto path = find_asset("web/" + name);
+  if (!path) return path.error();
+  const auto bytes = read_file(*path, kMaxAssetBytes);
+  if (!bytes) return bytes.error();
+  return std::string(bytes->begin(), bytes->end());
+}
+
+std::string_view text_of(const std::vector<std::uint8_t>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Writes a clip's files. Errors: output.
+Status write_clip(const ReviewSource& source, PageFolder& page, Made& made) {
+  ReviewClip& clip = *made.clip;
+  made.character_file = fmt::format("{}-{}", readable(source.character), content_hash(clip.character_json));
+  const std::string json =
+      fmt::format("{{\"character\":\"{}\",{}", made.character_file, clip.clip_json.substr(1));
+  const std::string stem = readable(source.character + "-" + source.name);
+  made.clip_file = fmt::format("{}-{}", stem, content_hash(json));
+  if (Status status = page.write("characters/" + made.character_file + ".js",
+                                 script("character", made.character_file, clip.character_json));
+      !status)
+    return status;
+  if (Status status = page.write("clips/" + made.clip_file + ".js", script("clip", made.clip_file, json));
+      !status)
+    return status;
+  made.thumbnail_light = "thumbnails/" + stem + "-" + content_hash(text_of(clip.thumbnail_light)) + ".webp";
+  made.thumbnail_dark = "thumbnails/" + stem + "-" + content_hash(text_of(clip.thumbnail_dark)) + ".webp";
+  if (Status status = page.write(made.thumbnail_light, clip.thumbnail_light); !status) return status;
+  if (Status status = page.write(made.thumbnail_dark, clip.thumbnail_dark); !status) return status;
+  clip.clip_json.clear();
+  clip.character_json.clear();
+  clip.thumbnail_light.clear();
+  clip.thumbnail_dark.clear();
+  return Done{};
+}
+
+/// Loads and writes one reaction; a clip that cannot be read is no error of the page. Errors: output.
+Status make_one(const fs::path& folder, const ReviewSource& source, PageFolder& page, Made& made) {
+  if (source.clip.empty() || source.status == "failed") return Done{};
+  auto clip = review_clip(folder, source, made.diagnostics);
+  if (!clip) {
+    if (clip.error().kind == ErrorKind::output) return clip.error();
+    made.error = clip.error().what;
+    made.diagnostics.warn(source.clip.string(), clip.error().what + "; it is listed without its clip");
+    return Done{};
+  }
+  made.clip = std::move(*clip);
+  return write_clip(source, page, made);
+}
+
+/// An exception must not leave its thread.
+Status make_guarded(const fs::path& folder, const ReviewSource& source, PageFolder& page, Made& made) {
+  try {
+    return make_one(folder, source, page, made);
+  } catch (const std::exception& exception) {
+    return Error{ErrorKind::internal,
+                 (folder / source.clip).string(),
+                 0,
+                 0,
+                 "",
+                 std::string("unexpected failure: ") + exception.what(),
+                 "this is a bug of the program; report it with the file"};
+  }
+}
+
+/// Runs make_one on every source. Errors: the first one.
+Status make_all(const fs::path& folder, const std::vector<ReviewSource>& sources, PageFolder& page,
+                const ReviewSettings& settings, const std::function<void(int, int)>& progress,
+                std::vector<Made>& made) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::optional<Error> failed;
+  int done = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < sources.size(); i = next++) {
+      const Status status = make_guarded(folder, sources[i], page, made[i]);
+      const std::lock_guard lock(mutex);
+      if (failed) return;
+      if (!status) {
+        failed = status.error();
+        return;
+      }
+      if (progress) progress(++done, static_cast<int>(sources.size()));
+    }
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < settings.threads; ++i) others.emplace_back(work);
+  work();
+  for (std::thread& other : others) other.join();
+  if (failed) return *failed;
+  return Done{};
+}
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+/// As a link from the page: each part of the path escaped by the page itself.
+Json link(const fs::path& path) { return text_or_null(path.generic_string()); }
+
+Json reaction_json(const ReviewSource& source, const Made& made) {
+  Json figures = Json::parse(source.figures_json);
+  if (made.clip) {
+    const auto fill = [&](const char* key, double value) {
+      if (!figures.contains(key) || figures[key].is_null()) figures[key] = value;
+    };
+    fill("duration_s", made.clip->duration_s);
+    fill("travel_m", made.clip->travel_m);
+    figures["clip_excess_max_deg"] = made.clip->clip_excess_max_deg;
+  }
+  Json json;
+  json["character"] = source.character;
+  json["name"] = source.name;
+  json["status"] = made.error.empty() ? source.status : "unreadable";
+  json["error"] = text_or_null(made.error.empty() ? source.error : made.error);
+  json["settings"] = Json::parse(source.settings_json);
+  json["figures"] = std::move(figures);
+  json["digest"] = text_or_null(source.digest);
+  json["warnings"] = source.warnings;
+  json["outputs"] = source.outputs;
+  json["report"] = link(source.report);
+  json["sheet"] = link(source.sheet);
+  json["clip"] = text_or_null(made.clip_file);
+  json["mesh"] = text_or_null(made.character_file);
+  json["thumbnail"] = text_or_null(made.thumbnail_light);
+  json["thumbnail_dark"] = text_or_null(made.thumbnail_dark);
+  return json;
+}
+
+std::string table_json(const ReviewSources& sources, const std::vector<Made>& made,
+                       const std::string& manifest) {
+  Json json;
+  json["format"] = 1;
+  json["generator"] = generator();
+  json[kManifestKey] = text_or_null(manifest);
+  json["recipe"] = text_or_null(sources.recipe);
+  json["reactions"] = Json::array();
+  for (std::size_t i = 0; i < made.size(); ++i)
+    json["reactions"].push_back(reaction_json(sources.reactions[i], made[i]));
+  return script_safe(json.dump(-1, ' ', true, Json::error_handler_t::replace));
+}
+
+/// What every page has. Errors: output, input (assets).
+Status write_program(PageFolder& page) {
+  for (const char* file : kProgramFiles) {
+    const auto text = read_asset(file);
+    if (!text) return text.error();
+    if (Status status = page.write(file, *text); !status) return status;
+  }
+  return Done{};
+}
+
+/// The page itself, last, so that it never shows half a table. Errors: output, input (assets).
+Status write_page(const fs::path& folder, PageFolder& page, const ReviewSources& sources,
+                  const std::vector<Made>& made) {
+  if (Status status = write_program(page); !status) return status;
+  const std::string table = table_json(sources, made, manifest_digest(folder));
+  if (Status status = page.write(kTableFile, script("reactions", "all", table)); !status) return status;
+  auto html = read_asset("index.html");
+  if (!html) return html.error();
+  return write_file(folder / "index.html", *html);
+}
+
+Review counted(const fs::path& folder, const std::vector<Made>& made) {
+  Review review{(folder / "index.html").lexically_normal(), static_cast<int>(made.size()), 0, 0};
+  std::set<std::string> characters;
+  for (const Made& one : made) {
+    if (!one.clip) continue;
+    ++review.clips;
+    characters.insert(one.character_file);
+  }
+  review.characters = static_cast<int>(characters.size());
+  return review;
+}
+
+std::string text_of_file(const fs::path& path) {
+  const auto bytes = read_file(path, kMaxTableBytes);
+  return bytes ? std::string(text_of(*bytes)) : std::string();
+}
+
+bool is_our_program(const fs::path& page) {
+  for (const char* file : kProgramFiles)
+    if (const auto ours = read_asset(file);
+        !ours || text_of_file(page.parent_path() / kPageFolder / file) != *ours)
+      return false;
+  const auto html = read_asset("index.html");
+  return html && text_of_file(page) == *html;
+}
+
+}  // namespace
+
+bool review_is_current(const fs::path& folder) {
+  const fs::path page = folder / "index.html";
+  const std::string manifest = manifest_digest(folder);
+  const std::string table = text_of_file(folder / kPageFolder / kTableFile);
+  if (manifest.empty() || table.find(fmt::format("\"{}\":\"{}\"", kManifestKey, manifest)) == table.npos)
+    return false;
+  Diagnostics unheard;
+  const auto sources = review_sources(folder, unheard);
+  if (!sources || !is_our_program(page)) return false;
+  std::error_code error;
+  const auto made = fs::last_write_time(page, error);
+  const auto is_newer = [&](const fs::path& file) {
+    return !file.empty() && (fs::last_write_time(folder / file, error) > made || error);
+  };
+  return !error &&
+         std::none_of(sources->reactions.begin(), sources->reactions.end(),
+                      [&](const auto& source) { return is_newer(source.clip) || is_newer(source.report); });
+}
+
+Result<Review> write_review(const fs::path& folder, const ReviewSettings& settings, Diagnostics& diagnostics,
+                            const std::function<void(int, int)>& progress) {
+  const auto sources = review_sources(folder, diagnostics);
+  if (!sources) return sources.error();
+  if (const Status status = check_ours(folder); !status) return status.error();
+  const fs::path page_folder = folder / kPageFolder;
+  std::error_code error;
+  const bool is_new = !fs::exists(page_folder, error);
+  PageFolder page(page_folder);
+  std::vector<Made> made(sources->reactions.size());
+  Status status = page.make();
+  if (status && is_new) status = write_program(page);  // a page that is cut short is known as ours
+  if (status) status = make_all(folder, sources->reactions, page, settings, progress, made);
+  if (status) status = write_page(folder, page, *sources, made);
+  if (!status) {
+    if (is_new) fs::remove_all(page_folder, error);
+    return status.error();
+  }
+  page.remove_leftovers();
+  for (const Made& one : made)
+    for (const Warning& warning : one.diagnostics.warnings()) diagnostics.warn(warning.subject, warning.what);
+  return counted(folder, made);
+}
+
+}  // namespace ukemi
