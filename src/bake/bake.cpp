@@ -17,6 +17,7 @@
 #include "bake/start.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "behave/tone.h"
 #include "body/ground.h"
 #include "clip/frames.h"
 #include "clip/ground_motion.h"
@@ -236,10 +237,28 @@ Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings&
   if (!body) return body.error();
   outcome.body = std::move(*body);
   widen_for_start(outcome, diagnostics);
+  auto thresholds = load_active_thresholds(settings.active_file);
+  if (!thresholds) return thresholds.error();
+  outcome.thresholds = *thresholds;
+  auto strength = muscle_strength(outcome.body, settings.sex, 1.0);
+  if (!strength) return strength.error();
+  outcome.strength = *strength;
   auto scene = scene_of(settings, outcome.start.segments[index(Segment::pelvis)].rotation);
   if (!scene) return scene.error();
   outcome.scene = *scene;
   return outcome;
+}
+
+SimulationInput simulation_input(const BakeOutcome& prepared, const Scene& scene,
+                                 const SimulationSettings& settings) {
+  return {prepared.body,
+          prepared.range,
+          prepared.thresholds,
+          prepared.strength,
+          prepared.start.state,
+          scene,
+          settings,
+          limp_behaviour(prepared.body, settings)};
 }
 
 Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics) {
@@ -248,8 +267,7 @@ Result<BakeOutcome> bake(const Character& character, const BakeSettings& setting
   if (!prepared) return prepared.error();
   BakeOutcome outcome = std::move(*prepared);
   outcome.timings_s.load = watch.lap();
-  auto simulation = simulate(outcome.body, outcome.range, outcome.start.state, outcome.scene,
-                             settings.simulation, diagnostics);
+  auto simulation = simulate(simulation_input(outcome, outcome.scene, settings.simulation), diagnostics);
   if (!simulation) return simulation.error();
   outcome.simulation = std::move(*simulation);
   if (settings.until_rest)

@@ -12,6 +12,7 @@
 #include "base/files.h"
 #include "base/result.h"
 #include "body/body.h"
+#include "body/muscles.h"
 #include "clip/resample.h"
 #include "clip/start.h"
 #include "export/export.h"
@@ -53,6 +54,7 @@ struct BakeSettings {
   std::string region = "human";        // name or file, see load_range_of_motion
   std::optional<RangeOfMotion> range;  // in place of the region's
   SimulationSettings simulation;
+  std::string active_file;  // thresholds of the active restriction; empty: assets/limits/active.toml
   // clip
   bool until_rest = true;  // trim the still tail
   double hold_s = 0.25;    // kept of it
@@ -91,6 +93,8 @@ struct BakeOutcome {
   RangeOfMotion range;                            // in force: widened joints included
   std::vector<std::pair<Joint, double>> widened;  // radians
   Scene scene;
+  ActiveThresholds thresholds;  // of the active restriction
+  MuscleStrength strength;
   SimulationResult simulation;     // trajectory above a floor at y = 0, its still tail trimmed, lead
                                    // and recovery added
   Clip clip;                       // where the file places the figure; a frame per frame of the trajectory
@@ -125,6 +129,10 @@ Status check_settings(const std::string& character, const BakeSettings& settings
 /// the stages.
 Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings& settings,
                                  Diagnostics& diagnostics);
+
+/// What the simulation of a prepared bake is given.
+SimulationInput simulation_input(const BakeOutcome& prepared, const Scene& scene,
+                                 const SimulationSettings& settings);
 
 /// Runs the stages on a loaded character. Errors: those of the stages.
 Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics);

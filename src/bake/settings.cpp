@@ -357,7 +357,7 @@ Settings method_settings() {
           [](auto& s) -> auto& { return s.simulation.active_k; }),
       with_unset(text<S>(
                      "active-file", "FILE", "its thresholds, as calibrate writes them",
-                     [](auto& s) -> auto& { return s.simulation.active_file; }),
+                     [](auto& s) -> auto& { return s.active_file; }),
                  "the program's own"),
       number<S>(
           "active-delay", "S", Range{0.0, 10.0}, "time before it sets in",

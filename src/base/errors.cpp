@@ -18,6 +18,14 @@ Error output_error(const std::filesystem::path& file, std::string what, std::str
   return {ErrorKind::output, file.string(), 0, 0, "", std::move(what), std::move(fix)};
 }
 
+Error simulation_error(std::string what, std::string fix) {
+  return {ErrorKind::simulation, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
+Error internal_error(std::string what, std::string fix) {
+  return {ErrorKind::internal, "", 0, 0, "", std::move(what), std::move(fix)};
+}
+
 Error error_about(std::string joint, Error error) {
   error.joint = std::move(joint);
   return error;

@@ -17,6 +17,11 @@ Error input_error(const std::filesystem::path& file, std::string what, std::stri
 /// A file or folder that cannot be written.
 Error output_error(const std::filesystem::path& file, std::string what, std::string fix);
 
+/// A simulation that failed.
+Error simulation_error(std::string what, std::string fix);
+/// A fault of the program's own, or of the libraries it was built with.
+Error internal_error(std::string what, std::string fix);
+
 /// The error with the place in its file: anything with a 1-based `line` and `column`.
 template <typename Place>
 Error error_at(const Place& place, Error error) {

@@ -16,7 +16,7 @@
 #include "load/load.h"
 #include "render/rom_plot.h"
 #include "restrict/limit_rows.h"
-#include "simulate/swing.h"
+#include "physics/swing.h"
 
 namespace ukemi {
 namespace {

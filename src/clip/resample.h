@@ -4,7 +4,7 @@
 #include "base/animation.h"
 #include "base/character.h"
 #include "humanoid/humanoid.h"
-#include "simulate/trajectory.h"
+#include "body/trajectory.h"
 
 namespace ukemi {
 

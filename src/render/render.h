@@ -13,7 +13,7 @@
 #include "body/body.h"
 #include "humanoid/humanoid.h"
 #include "restrict/range_of_motion.h"
-#include "simulate/trajectory.h"
+#include "body/trajectory.h"
 
 namespace ukemi {
 

@@ -113,13 +113,11 @@ std::optional<Error> fault_of(const RangeOfMotion& range) {
 
 }  // namespace
 
-std::optional<Error> fault_of(const ArticulatedBody& body, const RangeOfMotion& range,
-                              const StartState& start, const Scene& scene,
-                              const SimulationSettings& settings) {
-  if (auto fault = fault_of(settings)) return fault;
-  if (auto fault = fault_of(scene)) return fault;
-  if (auto fault = fault_of(body, start)) return fault;
-  return fault_of(range);
+std::optional<Error> fault_of(const SimulationInput& input) {
+  if (auto fault = fault_of(input.settings)) return fault;
+  if (auto fault = fault_of(input.scene)) return fault;
+  if (auto fault = fault_of(input.body, input.start)) return fault;
+  return fault_of(input.range);
 }
 
 }  // namespace ukemi

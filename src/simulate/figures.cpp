@@ -1,7 +1,6 @@
 #include "simulate/figures.h"
 
 #include <fmt/format.h>
-#include <ode/ode.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,18 +15,14 @@ constexpr double kJitterSpan_s = 0.5;  // before the end
 
 }  // namespace
 
-double kinetic_energy(double mass_kg, const Mat3& body_inertia, const RigidState& state) {
-  const Vec3 omega = state.rotation.conjugate() * state.angular_velocity;
-  return 0.5 * mass_kg * state.linear_velocity.squaredNorm() + 0.5 * omega.dot(body_inertia * omega);
-}
-
 Vec3 angular_momentum_about_centre(const std::vector<ModelBody>& bodies) {
   Vec3 centre = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
   double mass = 0.0;
   for (const ModelBody& body : bodies) {
-    centre += body.mass_kg * vec3(dBodyGetPosition(body.id));
-    velocity += body.mass_kg * vec3(dBodyGetLinearVel(body.id));
+    const RigidState s = read_state(body.id);
+    centre += body.mass_kg * s.position;
+    velocity += body.mass_kg * s.linear_velocity;
     mass += body.mass_kg;
   }
   centre /= mass;

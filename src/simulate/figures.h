@@ -1,17 +1,16 @@
 // What is measured at every accepted step, and what the report says of it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
-#include "simulate/collision.h"
-#include "simulate/model.h"
+#include "physics/collision.h"
+#include "physics/model.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {
 
-/// Kinetic and potential energy, momenta of rigid bodies.
-double kinetic_energy(double mass_kg, const Mat3& body_inertia, const RigidState& state);
 Vec3 angular_momentum_about_centre(const std::vector<ModelBody>& bodies);
 
 class Recorder {
@@ -26,6 +25,11 @@ class Recorder {
   void rejected() { ++figures_.rejected_steps; }
   void rest(double time_s) { figures_.rest_time_s = time_s; }
   void momentum(double momentum_n_s) { figures_.momentum_n_s = momentum_n_s; }
+  /// `share` of a joint's strength in the step, work of all muscles so far.
+  void muscles(double share, double work_j) {
+    figures_.muscle_share_max = std::max(figures_.muscle_share_max, share);
+    figures_.muscle_work_j = work_j;
+  }
 
   double energy_gain_j() const { return figures_.energy_gain_max_j; }
   LimitFigures limits(bool projected) const;

@@ -202,8 +202,8 @@ Result<Trial> run_scene(const Comparison& comparison, const Method& method, cons
   const BakeOutcome& prepared = comparison.prepared;
   const bool own = comparison.settings.region == kJudgedRegion;
   Diagnostics unsaid;
-  return simulate_trial(prepared.body, prepared.range, own ? prepared.range : comparison.judged,
-                        prepared.start.state, scene, method.simulation, unsaid);
+  return simulate_trial(simulation_input(prepared, scene, method.simulation),
+                        own ? prepared.range : comparison.judged, unsaid);
 }
 
 Result<Comparison> compare(const std::string& character, const Character& loaded,

@@ -290,7 +290,7 @@ TEST_F(RecipeFolder, FilesThatSettingsNameAreThoseBesideTheRecipe) {
                 folder / "r.toml");
   const auto all = reactions_of(recipe, {});
   ASSERT_TRUE(all);
-  EXPECT_EQ(all->at(0).settings.simulation.active_file, (folder / "own.toml").string());
+  EXPECT_EQ(all->at(0).settings.active_file, (folder / "own.toml").string());
   EXPECT_EQ(all->at(0).settings.region, "diamond");
 }
 

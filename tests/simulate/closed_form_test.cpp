@@ -4,10 +4,10 @@
 #include <cmath>
 #include <optional>
 
-#include "simulate/collision.h"
+#include "physics/collision.h"
 #include "simulate/figures.h"
 #include "simulate/hand_on_wrist.h"
-#include "simulate/limits.h"
+#include "physics/restriction.h"
 #include "simulate/standing_man.h"
 
 namespace ukemi {

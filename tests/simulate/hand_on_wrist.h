@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "simulate/model.h"
+#include "physics/model.h"
 #include "simulate/standing_man.h"
 
 namespace ukemi::test {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "simulate/hand_on_wrist.h"
-#include "simulate/limits.h"
+#include "physics/restriction.h"
 #include "simulate/standing_man.h"
 
 namespace ukemi {
@@ -203,12 +203,12 @@ TEST(Simulate, ExplicitActiveRestrictionIsRefusedWhereItExplodes) {
   settings.fixed_hz = 480.0;
   settings.active_k = 60.0;
   Diagnostics diagnostics;
-  const auto refused = simulate(man.body, man.range, man.start(), random_hit(1), settings, diagnostics);
+  const auto refused = simulate_limp(man.body, man.range, man.start(), random_hit(1), settings, diagnostics);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, ErrorKind::usage);
   EXPECT_NE(refused.error().what.find("k = 60"), std::string::npos);
   settings.active_k = 20.0;
-  EXPECT_TRUE(simulate(man.body, man.range, man.start(), random_hit(1), settings, diagnostics));
+  EXPECT_TRUE(simulate_limp(man.body, man.range, man.start(), random_hit(1), settings, diagnostics));
 }
 
 TEST(Simulate, TheBallStartsTouchingTheTargetAndPushesItAlong) {
@@ -251,10 +251,10 @@ TEST(Simulate, TheAimMovesAwayFromAnArmInTheWay) {
   SimulationSettings settings;
   settings.duration_s = 0.1;
   Diagnostics diagnostics;
-  ASSERT_TRUE(simulate(man.body, man.range, man.start(), scene, settings, diagnostics));
+  ASSERT_TRUE(simulate_limp(man.body, man.range, man.start(), scene, settings, diagnostics));
   EXPECT_TRUE(diagnostics.warnings().empty()) << diagnostics.warnings()[0].what;
   scene.target = Segment::pelvis;  // behind the hanging arm: no way round
-  ASSERT_TRUE(simulate(man.body, man.range, man.start(), scene, settings, diagnostics));
+  ASSERT_TRUE(simulate_limp(man.body, man.range, man.start(), scene, settings, diagnostics));
   ASSERT_EQ(diagnostics.warnings().size(), 1u);
   EXPECT_NE(diagnostics.warnings()[0].what.find("first"), std::string::npos);
 }
@@ -336,7 +336,7 @@ TEST(Simulate, ABlowStraightOutOfTheFloorIsSaid) {
   for (const double up : {1.0, -1.0}) {
     scene.direction = Vec3(0.0, up, 0.0);
     Diagnostics diagnostics;
-    ASSERT_TRUE(simulate(man.body, man.range, man.start(), scene, settings, diagnostics));
+    ASSERT_TRUE(simulate_limp(man.body, man.range, man.start(), scene, settings, diagnostics));
     bool said = false;
     for (const Warning& warning : diagnostics.warnings())
       said = said || warning.what.find("out of the floor") != std::string::npos;

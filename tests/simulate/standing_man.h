@@ -6,7 +6,7 @@
 #include "body/body.h"
 #include "humanoid/rotations.h"
 #include "restrict/range_of_motion.h"
-#include "simulate/simulate.h"
+#include "support/limp_run.h"
 
 namespace ukemi::test {
 
@@ -59,7 +59,7 @@ struct StandingMan {
 
 inline SimulationResult run(const StandingMan& man, const Scene& scene, const SimulationSettings& settings) {
   Diagnostics diagnostics;
-  auto result = simulate(man.body, man.range, man.start(), scene, settings, diagnostics);
+  auto result = simulate_limp(man.body, man.range, man.start(), scene, settings, diagnostics);
   EXPECT_TRUE(result) << result.error().message();
   return result ? std::move(*result) : SimulationResult{};
 }

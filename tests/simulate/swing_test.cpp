@@ -1,5 +1,5 @@
 // A single link that is pulled into the boundary of its joint.
-#include "simulate/swing.h"
+#include "physics/swing.h"
 
 #include <gtest/gtest.h>
 

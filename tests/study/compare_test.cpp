@@ -116,8 +116,9 @@ TEST(RandomHits, KeepTheMannequinHumanWithDefaultSettings) {
   const auto work = [&] {
     for (std::size_t i = next++; i < hits.size(); i = next++) {
       Diagnostics unsaid;
-      auto trial = simulate_trial(prepared->body, prepared->range, prepared->range, prepared->start.state,
-                                  scene_of(hits[i], pelvis), SimulationSettings{}, unsaid);
+      const Scene scene = scene_of(hits[i], pelvis);
+      const SimulationSettings settings;
+      auto trial = simulate_trial(simulation_input(*prepared, scene, settings), prepared->range, unsaid);
       if (trial) trials[i] = std::move(*trial);
     }
   };

@@ -57,8 +57,7 @@ void add_hit(Tally& tally, const BakeOutcome& prepared, const Scene& scene) {
   step_seconds = 0.0;
   Diagnostics diagnostics;
   const double before = thread_seconds();
-  const auto run =
-      simulate(prepared.body, prepared.range, prepared.start.state, scene, tally.settings, diagnostics);
+  const auto run = simulate(simulation_input(prepared, scene, tally.settings), diagnostics);
   tally.total_s += thread_seconds() - before;
   tally.step_s += step_seconds;
   if (!run) {
@@ -122,8 +121,8 @@ Status measure_bakes(const Character& character, int count) {
     const auto prepared = prepare_bake(character, settings, diagnostics);
     if (!prepared) return prepared.error();
     const double ready = thread_seconds();
-    const auto simulation = simulate(prepared->body, prepared->range, prepared->start.state, prepared->scene,
-                                     settings.simulation, diagnostics);
+    const auto simulation =
+        simulate(simulation_input(*prepared, prepared->scene, settings.simulation), diagnostics);
     if (!simulation) return simulation.error();
     const double simulated = thread_seconds();
     const auto outcome = bake(character, settings, diagnostics);

@@ -6,7 +6,7 @@
 #include "humanoid/humanoid.h"
 #include "humanoid/rotations.h"
 #include "load/load.h"
-#include "simulate/simulate.h"
+#include "behave/tone.h"
 
 namespace {
 
@@ -47,7 +47,10 @@ void hit(const ArticulatedBody& body, const BodyPose& segments) {
   SimulationSettings settings;
   settings.duration_s = 10.0 / 240.0;
   Diagnostics diagnostics;
-  const auto result = simulate(body, range, start, scene, settings, diagnostics);
+  static const ActiveThresholds thresholds = *load_active_thresholds("");
+  const MuscleStrength none{};
+  const auto result =
+      simulate({body, range, thresholds, none, start, scene, settings, limp_behaviour(body, settings)}, diagnostics);
   if (result)
     require_finite(*result);
   else

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/result.h"
+#include "physics/restriction.h"
 #include "restrict/range_of_motion.h"
-#include "simulate/simulate.h"
 
 namespace ukemi {
 

@@ -3,12 +3,14 @@
 
 #include <vector>
 
+#include "physics/model.h"
 #include "restrict/active.h"
 #include "restrict/limit_rows.h"
-#include "simulate/model.h"
-#include "simulate/simulate.h"
 
 namespace ukemi {
+
+enum class Limits { edges, segments, segments_euler, axis, none };
+enum class Active { implicit, explicit_torque, off };
 
 /// Which rows are present in a step.
 struct Reach {
@@ -63,35 +65,8 @@ class ActiveLimit {
   dJointID motor_ = nullptr;
 };
 
-/// Muscle tone of one joint: a spring and damper towards the start pose, implicit and capped by the torque
-/// that a man's joint can give. Beyond Era et al.: who is hit stiffens first and then gives way.
-class Tone {
- public:
-  /// `strength`: torques relative to a man of 73 kg and 1.741 m. Measured from the bodies' present
-  /// orientations.
-  Tone(OdeWorld& world, const Model& model, const ModelJoint& joint, double strength);
-
-  /// `share` of the joint's torque, 0 to 1.
-  void prepare(double h, double share);
-  /// What the muscles did in the step of length h that has just been taken, J; less than 0 where they gave
-  /// way.
-  double work(double h) const;
-  /// From now on the present pose is held.
-  void capture();
-
- private:
-  const Model& model_;
-  const ModelJoint& joint_;
-  double torque_;
-  Quat parent_from_child_;  // to be held
-  dJointID motor_ = nullptr;
-  struct Row {
-    Vec3 axis;
-    double target, cfm;  // torque = (target - speed after the step) / cfm
-    double speed;        // before the step, rad/s
-  };
-  std::vector<Row> rows_;
-};
+/// Explicit torques explode where k h is beyond this (k 1/s, h s).
+inline constexpr double kMaxExplicitGain = 0.1;
 
 /// Joint damping: -k I omega on the child, the opposite on the parent; I of the lighter of the two.
 void apply_damping(const Model& model, const ModelJoint& joint, double k);

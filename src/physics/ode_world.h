@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "base/math.h"
-#include "simulate/ode_handles.h"
+#include "physics/ode_handles.h"
 
 namespace ukemi {
 

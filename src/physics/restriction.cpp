@@ -1,9 +1,11 @@
-#include "simulate/limits.h"
+#include "physics/restriction.h"
 
 #include <ode/ode.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "physics/motor.h"
 
 namespace ukemi {
 namespace {
@@ -16,39 +18,9 @@ constexpr int suffixed(int parameter, std::size_t row) {
   return parameter + static_cast<int>(row) * dParamGroup;
 }
 
-Quat orientation(const Model& model, int body) { return quat(dBodyGetQuaternion(model.bodies()[body].id)); }
-
-/// World axes of the joint frame.
-Quat world_from_joint(const Model& model, const ModelJoint& joint) {
-  return orientation(model, joint.parent) * joint.parent_from_joint;
-}
-
-Vec3 relative_omega(const Model& model, const ModelJoint& joint) {
-  return vec3(dBodyGetAngularVel(model.bodies()[joint.child].id)) -
-         vec3(dBodyGetAngularVel(model.bodies()[joint.parent].id));
-}
-
 double inertia_about(const Model& model, int body, const Vec3& world_axis) {
   const Vec3 axis = orientation(model, body).conjugate() * world_axis;
   return axis.dot(model.bodies()[body].inertia * axis);
-}
-
-void add_torque(const Model& model, const ModelJoint& joint, const Vec3& torque) {
-  dBodyAddTorque(model.bodies()[joint.child].id, torque.x(), torque.y(), torque.z());
-  dBodyAddTorque(model.bodies()[joint.parent].id, -torque.x(), -torque.y(), -torque.z());
-}
-
-/// A motor whose angles grow with the child's rotation relative to the parent.
-dJointID create_motor(OdeWorld& world, const Model& model, const ModelJoint& joint) {
-  const dJointID motor = dJointCreateAMotor(world.id(), nullptr);
-  dJointAttach(motor, model.bodies()[joint.child].id, model.bodies()[joint.parent].id);
-  dJointSetAMotorMode(motor, dAMotorUser);
-  dJointSetAMotorNumAxes(motor, 0);
-  return motor;
-}
-
-void set_axis(dJointID motor, std::size_t row, const Vec3& axis) {
-  dJointSetAMotorAxis(motor, static_cast<int>(row), 0, axis.x(), axis.y(), axis.z());
 }
 
 /// One-sided stop `distance` ahead (or behind, when negative) along `axis` of length |axis|.
@@ -202,103 +174,8 @@ void ActiveLimit::prepare(bool enabled) {
     return;
   }
   dJointSetAMotorNumAxes(motor_, static_cast<int>(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    set_axis(motor_, i, acting[i].first);
-    dJointSetAMotorParam(motor_, suffixed(dParamVel, i), 0.0);
-    dJointSetAMotorParam(motor_, suffixed(dParamFMax, i), dInfinity);
-    dJointSetAMotorParam(motor_, suffixed(dParamCFM, i), 1.0 / acting[i].second);
-  }
-}
-
-namespace {
-
-constexpr double kFullTorqueAt = 0.35;   // rad: error at which a joint gives all its torque
-constexpr double kToneDamping_s = 0.12;  // damping over stiffness
-
-/// What a man's joint can give, N m: isometric maxima of adult men, the weaker direction (dynamometry; neck,
-/// trunk, shoulder and elbow are rough).
-double joint_torque(Joint joint) {
-  switch (joint) {
-    case Joint::spine:
-      return 200.0;
-    case Joint::chest:
-      return 150.0;
-    case Joint::neck:
-      return 30.0;
-    case Joint::clavicle_l:
-    case Joint::clavicle_r:
-    case Joint::shoulder_l:
-    case Joint::shoulder_r:
-      return 60.0;
-    case Joint::elbow_l:
-    case Joint::elbow_r:
-      return 45.0;
-    case Joint::wrist_l:
-    case Joint::wrist_r:
-      return 10.0;
-    case Joint::hip_l:
-    case Joint::hip_r:
-      return 150.0;
-    case Joint::knee_l:
-    case Joint::knee_r:
-      return 150.0;
-    case Joint::ankle_l:
-    case Joint::ankle_r:
-      break;
-  }
-  return 60.0;
-}
-
-}  // namespace
-
-Tone::Tone(OdeWorld& world, const Model& model, const ModelJoint& joint, double strength)
-    : model_(model), joint_(joint), torque_(strength * joint_torque(joint.joint)) {
-  if (torque_ > 0.0) motor_ = create_motor(world, model, joint);
-  capture();
-}
-
-void Tone::capture() {
-  parent_from_child_ = orientation(model_, joint_.parent).conjugate() * orientation(model_, joint_.child);
-}
-
-// A spring k and damper c over a step h as a motor: CFM = 1 / (h k + c), target speed = -k e CFM. A greater
-// CFM keeps the torque that this asks for below its cap; a row with a finite FMax would do so too, but costs
-// ODE's solver many times as much as one without.
-void Tone::prepare(double h, double share) {
-  if (motor_ == nullptr) return;
-  rows_.clear();
-  dJointSetAMotorNumAxes(motor_, share > 0.0 ? 3 : 0);
-  if (share <= 0.0) return;
-  const Mat3 axes = world_from_joint(model_, joint_).toRotationMatrix();
-  const Quat held = orientation(model_, joint_.parent) * parent_from_child_;
-  const Vec3 error = log_rotation(orientation(model_, joint_.child) * held.conjugate());
-  const Vec3 omega = relative_omega(model_, joint_);
-  const double cap = share * torque_;
-  const double stiffness = cap / kFullTorqueAt;
-  const double cfm = 1.0 / (stiffness * (h + kToneDamping_s));
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 axis = axes.col(i);
-    const auto row = static_cast<std::size_t>(i);
-    const double target = -stiffness * error.dot(axis) * cfm;
-    set_axis(motor_, row, axis);
-    const double speed = omega.dot(axis);
-    const double row_cfm = std::max(cfm, std::abs(target - speed) / cap);
-    dJointSetAMotorParam(motor_, suffixed(dParamVel, row), target);
-    dJointSetAMotorParam(motor_, suffixed(dParamFMax, row), dInfinity);
-    dJointSetAMotorParam(motor_, suffixed(dParamCFM, row), row_cfm);
-    rows_.push_back({axis, target, row_cfm, speed});
-  }
-}
-
-double Tone::work(double h) const {
-  if (rows_.empty()) return 0.0;
-  const Vec3 omega = relative_omega(model_, joint_);
-  double sum = 0.0;
-  for (const Row& row : rows_) {
-    const double speed = omega.dot(row.axis);
-    sum += (row.target - speed) / row.cfm * 0.5 * (row.speed + speed) * h;
-  }
-  return sum;
+  for (std::size_t i = 0; i < count; ++i)
+    set_row(motor_, i, {acting[i].first, 0.0, 1.0 / acting[i].second, unbounded()});
 }
 
 void apply_damping(const Model& model, const ModelJoint& joint, double k) {

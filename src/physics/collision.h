@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "simulate/model.h"
-#include "simulate/simulate.h"
+#include "physics/model.h"
+#include "physics/senses.h"
 
 namespace ukemi {
 
@@ -16,6 +16,7 @@ enum class PairKind { floor, prop, self };
 struct ContactSettings {
   bool sparse_friction = true;  // friction rows only where they matter, see touch()
   double friction = 0.8;
+  bool firm_soles = false;  // soles on the floor do not slip
 };
 
 /// Contacts of one moment: plain data, so that a rejected step can use them again.
@@ -48,6 +49,8 @@ class Collision {
   void accept_overlaps();
   Contacts find() const;
   bool is_floor(std::size_t pair) const { return pairs_[pair].kind == PairKind::floor; }
+  /// The same as the body feels them.
+  std::vector<SegmentContact> felt(const Contacts& contacts) const;
   /// Creates the contact joints of a step.
   void touch(const Contacts& contacts, const ContactSettings& settings) const;
   /// Where a probe that comes along `direction` from `start` first touches the body, and which segment;

@@ -1,4 +1,4 @@
-// What a simulation leaves: the segments over time, the props, and the figures that judge the run.
+// The segments over time: where they start, and what a simulation leaves of them and of the props.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,17 @@
 #include "humanoid/humanoid.h"
 
 namespace ukemi {
+
+/// Segments at time 0 and their velocities (zero unless the body starts from motion).
+struct StartState {
+  BodyPose segments;
+  PerSegment<Vec3> linear_velocity{};   // of the segment's origin, m/s
+  PerSegment<Vec3> angular_velocity{};  // rad/s, world
+  StartState() {
+    linear_velocity.fill(Vec3::Zero());
+    angular_velocity.fill(Vec3::Zero());
+  }
+};
 
 /// A ball, a box or a slope that takes part in the scene.
 struct Prop {

@@ -1,4 +1,4 @@
-#include "simulate/model.h"
+#include "physics/model.h"
 
 #include <ode/ode.h>
 
@@ -15,6 +15,11 @@ void write_state(dBodyID body, const RigidState& state) {
   dBodySetLinearVel(body, state.linear_velocity.x(), state.linear_velocity.y(), state.linear_velocity.z());
   dBodySetAngularVel(body, state.angular_velocity.x(), state.angular_velocity.y(),
                      state.angular_velocity.z());
+}
+
+double kinetic_energy(double mass_kg, const Mat3& inertia, const RigidState& state) {
+  const Vec3 omega = state.rotation.conjugate() * state.angular_velocity;
+  return 0.5 * mass_kg * state.linear_velocity.squaredNorm() + 0.5 * omega.dot(inertia * omega);
 }
 
 Quat ModelJoint::rotation(const Quat& world_from_parent, const Quat& world_from_child) const {

@@ -1,11 +1,12 @@
-#include "simulate/swing.h"
+#include "physics/swing.h"
 
 #include <ode/ode.h>
 
 #include <cmath>
 
-#include "simulate/limits.h"
-#include "simulate/model.h"
+#include "base/errors.h"
+#include "physics/model.h"
+#include "physics/restriction.h"
 
 namespace ukemi {
 namespace {
@@ -68,11 +69,10 @@ Result<std::vector<SwingTwist>> swing_joint(const JointRange& range, const Swing
     std::vector<SwingTwist> charts = run(world, range, settings);
     for (const SwingTwist& chart : charts)
       if (!chart.swing.allFinite())
-        return Error{ErrorKind::simulation,  "", 0, 0, "", "the swinging link diverged",
-                     "choose a gentler pull"};
+        return simulation_error("the swinging link diverged", "choose a gentler pull");
     return charts;
   } catch (const OdeFailure& failure) {
-    return Error{ErrorKind::simulation, "", 0, 0, "", failure.what(), "choose other limits"};
+    return simulation_error(failure.what(), "choose other limits");
   }
 }
 

@@ -1,4 +1,4 @@
-#include "simulate/collision.h"
+#include "physics/collision.h"
 
 #include <ode/ode.h>
 
@@ -157,12 +157,16 @@ void Collision::touch(const Contacts& contacts, const ContactSettings& settings)
     surface.soft_erp = kSoftErp;
     surface.soft_cfm = kSoftCfm;
     surface.mu = settings.friction;
+    const Pair& pair = pairs_[point.pair];
     const dBodyID a = dGeomGetBody(point.a);
     const dBodyID b = dGeomGetBody(point.b);
     if (settings.sparse_friction) {
-      if (pairs_[point.pair].kind == PairKind::floor) {
+      if (pair.kind == PairKind::floor) {
         // Two rows at the first two contacts of a pair hold it; the others only carry.
-        if (nth >= kFullFrictionContacts) surface.mu = 0.0;
+        if (nth >= kFullFrictionContacts)
+          surface.mu = 0.0;
+        else if (settings.firm_soles && is_foot(colliders_[pair.b].segment))
+          surface.mu = dInfinity;
       } else {
         // One row along the slip.
         Vec3 slip = velocity_at(a, contact.geom.pos) - velocity_at(b, contact.geom.pos);
@@ -178,6 +182,26 @@ void Collision::touch(const Contacts& contacts, const ContactSettings& settings)
     }
     dJointAttach(dJointCreateContact(world_.id(), world_.contacts(), &contact), a, b);
   }
+}
+
+std::vector<SegmentContact> Collision::felt(const Contacts& contacts) const {
+  std::vector<SegmentContact> felt;
+  felt.reserve(contacts.points.size());
+  for (const Contacts::Point& point : contacts.points) {
+    const Pair& pair = pairs_[point.pair];
+    using With = SegmentContact::With;
+    const With with = pair.kind == PairKind::floor  ? With::floor
+                      : pair.kind == PairKind::prop ? With::prop
+                                                    : With::self;
+    // The normal points into point.a's shape.
+    for (const std::size_t i : {pair.a, pair.b}) {
+      const Collider& collider = colliders_[i];
+      if (collider.body < 0) continue;
+      const Vec3 normal = collider.geom == point.a ? point.normal : Vec3(-point.normal);
+      felt.push_back({collider.segment, with, point.place, normal, point.depth});
+    }
+  }
+  return felt;
 }
 
 std::optional<Collision::FirstTouch> Collision::first_touch(dGeomID probe, const Vec3& start,

@@ -4,9 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "simulate/collision.h"
-#include "simulate/model.h"
-#include "simulate/simulate.h"
+#include "base/result.h"
+#include "body/trajectory.h"
+#include "physics/collision.h"
+#include "physics/model.h"
+#include "physics/scene.h"
 
 namespace ukemi {
 

@@ -1,12 +1,10 @@
-#include "simulate/scene_props.h"
+#include "physics/scene_props.h"
 
 #include <fmt/format.h>
 #include <ode/ode.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "simulate/figures.h"
 
 namespace ukemi {
 namespace {

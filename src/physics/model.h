@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "body/body.h"
+#include "physics/ode_world.h"
 #include "restrict/range_of_motion.h"
-#include "simulate/ode_world.h"
 
 namespace ukemi {
 
@@ -17,6 +17,8 @@ struct RigidState {
 };
 RigidState read_state(dBodyID body);
 void write_state(dBodyID body, const RigidState& state);
+/// J; `inertia` about the centre of mass, body axes.
+double kinetic_energy(double mass_kg, const Mat3& inertia, const RigidState& state);
 
 /// A rigid body: one segment and those fused to it. Its origin is the centre of mass, its axes are the
 /// segment's.

@@ -1,4 +1,4 @@
-#include "simulate/ode_world.h"
+#include "physics/ode_world.h"
 
 #include <ode/ode.h>
 
