@@ -10,6 +10,8 @@
 #include "simulate/standing_man.h"
 
 namespace ukemi {
+using test::simulate_limp;
+
 namespace {
 
 using test::run;
