@@ -73,13 +73,13 @@ TEST(Layering, ReportsAThirdPartyOutsideItsRoomOrInAHeader) {
            "  #  include <ode/ode.h>\n#include \"assimp/scene.h\"\n#include <fmt/format.h>\n");
   tree.add("bake/options.cpp", "#include <CLI/CLI.hpp>\n");
   tree.add("cli/main.cpp", "#include <CLI/CLI.hpp>\n#include <nlohmann/json.hpp>\n");
-  tree.add("simulate/world.h", "#include <ode/ode.h>\n");
-  tree.add("simulate/world.cpp", "#include <ode/ode.h>\n");
+  tree.add("physics/world.h", "#include <ode/ode.h>\n");
+  tree.add("physics/world.cpp", "#include <ode/ode.h>\n");
   EXPECT_EQ(tree.violations(), (Strings{"bake/options.cpp:1: bake must not include CLI/CLI.hpp",
                                         "body/body.cpp:1: body must not include ode/ode.h",
                                         "body/body.cpp:2: body must not include assimp/scene.h",
                                         "cli/main.cpp:2: cli must not include nlohmann/json.hpp",
-                                        "simulate/world.h:1: a header must not include ode/ode.h"}));
+                                        "physics/world.h:1: a header must not include ode/ode.h"}));
 }
 
 TEST(Layering, ReportsUnknownHeadersFoldersAndFiles) {
