@@ -17,7 +17,6 @@
 #include "bake/start.h"
 #include "base/errors.h"
 #include "base/files.h"
-#include "behave/tone.h"
 #include "body/ground.h"
 #include "clip/frames.h"
 #include "clip/ground_motion.h"
@@ -240,13 +239,24 @@ Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings&
   auto thresholds = load_active_thresholds(settings.active_file);
   if (!thresholds) return thresholds.error();
   outcome.thresholds = *thresholds;
-  auto strength = muscle_strength(outcome.body, settings.sex, 1.0);
+  auto strength = muscle_strength(outcome.body, settings.sex, settings.muscle);
   if (!strength) return strength.error();
   outcome.strength = *strength;
+  outcome.behaviour = behaviour_settings(settings);
   auto scene = scene_of(settings, outcome.start.segments[index(Segment::pelvis)].rotation);
   if (!scene) return scene.error();
   outcome.scene = *scene;
   return outcome;
+}
+
+BehaviourSettings behaviour_settings(const BakeSettings& settings) {
+  BehaviourSettings behaviour;
+  const bool fixed = settings.simulation.fixed_hz > 0.0;
+  behaviour.kind = settings.behaviour.value_or(fixed ? Behaviour::limp : Behaviour::alert);
+  behaviour.most_steps = static_cast<int>(settings.most_steps);
+  behaviour.latency_s = settings.latency_s;
+  behaviour.muscle = settings.muscle;
+  return behaviour;
 }
 
 SimulationInput simulation_input(const BakeOutcome& prepared, const Scene& scene,
@@ -258,7 +268,7 @@ SimulationInput simulation_input(const BakeOutcome& prepared, const Scene& scene
           prepared.start.state,
           scene,
           settings,
-          limp_behaviour(prepared.body, settings)};
+          behaviour_of(prepared.body, prepared.start.state.segments, scene, prepared.behaviour, settings)};
 }
 
 Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics) {

@@ -11,6 +11,7 @@
 #include "base/character.h"
 #include "base/files.h"
 #include "base/result.h"
+#include "behave/behaviour.h"
 #include "body/body.h"
 #include "body/muscles.h"
 #include "clip/resample.h"
@@ -50,6 +51,11 @@ struct BakeSettings {
   std::optional<std::string> pose;  // rest, stand, guard
   std::optional<std::string> clip;  // name of a clip of the file
   std::optional<double> at_s;
+  // behaviour
+  std::optional<Behaviour> behaviour;  // unless given: alert, limp with fixed steps
+  double most_steps = 6;               // of a recovery
+  double muscle = 1.0;                 // strength, of a healthy adult's
+  std::optional<double> latency_s;     // unless given: the behaviour's
   // method
   std::string region = "human";        // name or file, see load_range_of_motion
   std::optional<RangeOfMotion> range;  // in place of the region's
@@ -95,6 +101,7 @@ struct BakeOutcome {
   Scene scene;
   ActiveThresholds thresholds;  // of the active restriction
   MuscleStrength strength;
+  BehaviourSettings behaviour;
   SimulationResult simulation;     // trajectory above a floor at y = 0, its still tail trimmed, lead
                                    // and recovery added
   Clip clip;                       // where the file places the figure; a frame per frame of the trajectory
@@ -129,6 +136,9 @@ Status check_settings(const std::string& character, const BakeSettings& settings
 /// the stages.
 Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings& settings,
                                  Diagnostics& diagnostics);
+
+/// The behaviour in force.
+BehaviourSettings behaviour_settings(const BakeSettings& settings);
 
 /// What the simulation of a prepared bake is given.
 SimulationInput simulation_input(const BakeOutcome& prepared, const Scene& scene,

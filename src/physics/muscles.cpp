@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFullTorqueAt = 0.35;   // rad: error at which tone gives all its torque
 constexpr double kToneDamping_s = 0.12;  // damping over stiffness
-constexpr double kRise_s = 0.2;  // from nothing to full strength (truth: 75 to 85 % of the peak after 200 ms)
+constexpr double kRise_s = 0.01;  // from nothing to full strength (truth: 75 to 85 % of the peak after 200 ms)
 constexpr double kLeastDamping = 1e-3;  // N m s: a row needs some
 
 /// Rotation that takes the goal to the present rotation, world, rad.

@@ -4,11 +4,35 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "physics/goals.h"
 #include "physics/senses.h"
 
 namespace ukemi {
+
+/// A step of the foot that a behaviour took.
+struct StepTaken {
+  Segment foot = Segment::foot_l;
+  double lift_s = 0.0;
+  std::optional<double> contact_s;  // nothing: still in the air
+  double length_m = 0.0;            // of the foot's way over the ground
+};
+
+/// A moment that a report or a picture may want to show.
+struct BehaviourEvent {
+  std::string name;
+  double time_s = 0.0;
+};
+
+/// What a behaviour did.
+struct ControllerReport {
+  std::vector<StepTaken> steps;
+  std::optional<double> fall_begins_s;  // balance was lost
+  std::vector<BehaviourEvent> events;
+};
 
 /// A behaviour. Its state changes in start() and observe() alone, so that a rejected step needs no undo.
 class Controller {
@@ -26,6 +50,7 @@ class Controller {
   virtual void drive(double time_s, Goals& goals) const = 0;
   /// Rest ends the run only then.
   virtual bool done() const { return true; }
+  virtual ControllerReport report() const { return {}; }
 };
 
 /// Makes the behaviour of a run, anew for every try: a run that diverges is tried again with shorter steps.

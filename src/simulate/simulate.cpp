@@ -195,6 +195,7 @@ SimulationResult Simulation::result() {
   SimulationResult result;
   result.limits = recorder_.limits(projecting());
   result.figures = recorder_.figures();
+  if (controller_) result.behaviour = controller_->report();
   if (frames_) result.trajectory = std::move(frames_->trajectory);
   return result;
 }

@@ -74,6 +74,7 @@ struct SimulationResult {
   Trajectory trajectory;
   LimitFigures limits;
   SimulationFigures figures;
+  ControllerReport behaviour;
 };
 
 /// What a run is given. The thresholds are those of the active restriction, the strength that of the muscles

@@ -212,6 +212,7 @@ Result<Comparison> compare(const std::string& character, const Character& loaded
   BakeSettings bake;
   bake.humanoid = settings.humanoid;
   bake.pose = "stand";
+  bake.behaviour = Behaviour::limp;
   bake.region = kJudgedRegion;
   auto human = prepare_bake(loaded, bake, diagnostics);
   if (!human) return human.error();

@@ -1,0 +1,57 @@
+#include "behave/behaviour.h"
+
+#include <algorithm>
+
+#include "behave/alert.h"
+#include "behave/tone.h"
+
+namespace ukemi {
+namespace {
+
+constexpr double kFullFlinch_m_s = 0.2;  // change of the body's speed that startles wholly
+constexpr double kLatency_s = 0.10, kDazedLatency_s = 0.20;
+constexpr double kDazedStrength = 0.55;
+constexpr int kDazedSteps = 1;
+
+/// N s that the blow brings.
+double momentum_of(const Scene& scene) {
+  switch (scene.kind) {
+    case SceneKind::ball:
+    case SceneKind::slope:
+    case SceneKind::box:
+      return scene.ball_mass_kg * scene.ball_speed_m_s;
+    case SceneKind::push:
+      return scene.push_force_n * scene.push_duration_s;
+    case SceneKind::impulse:
+      return scene.impulse_n_s;
+    case SceneKind::fall:
+      break;
+  }
+  return 0.0;
+}
+
+StandSettings stand_settings(const ArticulatedBody& body, const Scene& scene,
+                             const BehaviourSettings& asked) {
+  const bool dazed = asked.kind == Behaviour::dazed;
+  StandSettings stand;
+  stand.most_steps = dazed ? std::min(asked.most_steps, kDazedSteps) : asked.most_steps;
+  stand.latency_s = asked.latency_s.value_or(dazed ? kDazedLatency_s : kLatency_s);
+  stand.strength = dazed ? kDazedStrength : 1.0;
+  stand.arms_free = asked.arms_free;
+  stand.flinch.way = scene.direction;
+  stand.flinch.size = std::min(1.0, momentum_of(scene) / body.mass_kg / kFullFlinch_m_s);
+  return stand;
+}
+
+}  // namespace
+
+MakeController behaviour_of(const ArticulatedBody& body, const BodyPose& home, const Scene& scene,
+                            const BehaviourSettings& behaviour, const SimulationSettings& settings) {
+  if (behaviour.kind == Behaviour::limp) return limp_behaviour(body, settings);
+  const StandSettings stand = stand_settings(body, scene, behaviour);
+  return [&body, &home, stand, gravity = settings.gravity] {
+    return std::make_unique<Alert>(body, home, gravity, stand);
+  };
+}
+
+}  // namespace ukemi

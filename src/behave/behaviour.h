@@ -1,0 +1,30 @@
+// What a body does after the blow: lives, is dazed, or is limp.
+#pragma once
+
+#include "behave/stand.h"
+#include "body/muscles.h"
+#include "simulate/simulate.h"
+
+namespace ukemi {
+
+enum class Behaviour {
+  alert,  // balances, steps, protects itself
+  dazed,  // the same late and weakly, with at most one step
+  limp    // tone alone, which fades
+};
+
+struct BehaviourSettings {
+  Behaviour kind = Behaviour::alert;
+  int most_steps = 6;               // of a recovery; 0: the feet stay where they are
+  std::optional<double> latency_s;  // unless given: 0.10, dazed 0.20
+  double muscle = 1.0;              // strength, of a healthy adult's
+  unsigned seed = 0;                // varies latency, arms and steps; 0: none
+  PerSide<bool> arms_free{true, true};
+};
+
+/// The behaviour of a body that stands in `home` when the blow of `scene` comes. `home` and `body` must
+/// outlive the runs.
+MakeController behaviour_of(const ArticulatedBody& body, const BodyPose& home, const Scene& scene,
+                            const BehaviourSettings& behaviour, const SimulationSettings& settings);
+
+}  // namespace ukemi

@@ -1,0 +1,615 @@
+#include "behave/stand.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "behave/ground.h"
+
+namespace ukemi {
+namespace {
+
+// Balance.
+constexpr double kSpinShare = 0.58;  // of the turning that becomes speed when it is stopped
+constexpr double kEdge = 0.02;       // m: pressure keeps so far inside the soles
+constexpr double kPush = 1.5;        // pressure beyond the capture point, per metre from the reference
+constexpr double kCalmPush = 2.5;    // the same once a step has been taken and the capture point is inside
+constexpr double kLift = 75.0, kLiftDamping = 14.0;         // 1/s^2, 1/s: height
+constexpr double kUpright = 600.0, kUprightDamping = 30.0;  // N m/rad, N m s/rad: trunk
+constexpr double kMostUpright = 150.0;                      // N m
+constexpr double kReaction_s = 0.06;                        // from nothing to everything
+
+// Springs, N m/rad at strength 1: share of the torque at 0.35 rad.
+constexpr double kStiffness[] = {220.0, 160.0, 40.0,  70.0,  70.0,  60.0,  12.0,  70.0, 70.0,
+                                 60.0,  12.0,  230.0, 230.0, 150.0, 230.0, 230.0, 150.0};
+constexpr double kFullAt = 0.35;  // rad
+constexpr double kEccentric = 1.2;
+constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
+constexpr double kSpringsBefore = 0.6;  // before the reaction
+constexpr double kAhead_s = 0.004;      // postures are compared over so long
+
+// Steps.
+constexpr double kEarliestLift_s = 0.25;
+constexpr double kFastest_s = 0.20;
+constexpr double kHeel = 1.03;  // of the leg, by the heel
+
+}  // namespace
+
+struct Standing::View {
+  double time_s = 0.0;
+  PerSide<bool> stands{};
+  Vec2 com, velocity, icp;  // on the ground; icp: the extrapolated centre of mass (capture point)
+  double height = 1.0, rate = 3.0;
+  double yaw = 0.0;  // of the body from home
+  Vec2 forward, right;
+  PerSide<Vec2> sole;
+  std::vector<Vec2> outer, inner;  // support, and the part of it that pressure uses
+  Vec2 middle = Vec2::Zero();      // of the soles that stand
+  Vec2 reference = Vec2::Zero();
+
+  /// The capture point after a while, pressure at the nearest place to it.
+  Vec2 icp_after(double span_s) const {
+    const Vec2 p = into(inner, icp);
+    return p + (icp - p) * std::exp(rate * std::max(0.0, span_s));
+  }
+  double right_part(const Vec2& v) const { return v.dot(right); }
+};
+
+struct Standing::Wrench {
+  Vec3 force = Vec3::Zero();  // of the ground
+  PerSide<double> share{0.5, 0.5};
+  PerSide<Vec2> pressure{Vec2::Zero(), Vec2::Zero()};
+};
+
+Standing::Standing(const ArticulatedBody& body, const BodyPose& home, double gravity,
+                   const StandSettings& settings)
+    : settings_(settings),
+      physique_(body, Leg(body, home, BodySide::left).length_m(), gravity),
+      legs_{Leg(body, home, BodySide::left), Leg(body, home, BodySide::right)},
+      home_(home) {
+  const double heading = yaw_of(home[0].rotation * Vec3::UnitX());
+  flinch_ = Flinch(settings.flinch, heading);
+  Vec3 com = Vec3::Zero();
+  for (int i = 0; i < kSegmentCount; ++i)
+    com += body.segments[i].mass_kg / body.mass_kg * (home[i] * body.segments[i].centre_of_mass);
+  Vec2 middle = Vec2::Zero();
+  for (const BodySide side : kSides) {
+    const Vec2 sole = on_ground(home[ukemi::index(leg(side).foot)] * leg(side).sole_middle);
+    home_sole_[ukemi::index(side)] = sole;
+    middle += 0.5 * sole;
+  }
+  const auto in_heading = [&](const Vec2& v) {
+    return Vec2(v.dot(forward_of(heading)), v.dot(right_of(heading)));
+  };
+  home_com_ = in_heading(on_ground(com) - middle);
+  for (Vec2& sole : home_sole_) sole = in_heading(sole - middle);
+  home_height_ = com.y();
+  straightness_ = 1.0;
+  pelvis_y_ = home[0].translation.y();
+}
+
+double Standing::active(double time_s) const {
+  return std::clamp((time_s - s(settings_.latency_s)) / s(kReaction_s), 0.0, 1.0);
+}
+
+std::optional<BodySide> Standing::swinging() const {
+  return phase_ == Phase::swing ? std::optional(swing_.side) : std::nullopt;
+}
+
+Standing::View Standing::view_of(const Senses& senses) const {
+  View view;
+  view.time_s = senses.time_s;
+  view.com = on_ground(senses.com);
+  view.velocity = on_ground(senses.com_velocity);
+  view.height = std::max(senses.com.y(), 0.1);
+  view.rate = std::sqrt(std::max(physique_.gravity, 0.1) / view.height);
+  const Vec2 turning =
+      Vec2(-senses.angular_momentum.z(), senses.angular_momentum.x()) / (physique_.mass_kg * view.height);
+  view.icp = view.com + (view.velocity + kSpinShare * turning) / view.rate;
+  double yaw_x = 0.0;
+  double yaw_y = 0.0;
+  std::vector<Vec2> outer;
+  std::vector<Vec2> inner;
+  int standing = 0;
+  for (const BodySide side : kSides) {
+    const int i = ukemi::index(side);
+    view.sole[i] = leg(side).sole_at(senses);
+    view.stands[i] = swinging() != side;
+    if (!view.stands[i]) continue;
+    ++standing;
+    view.middle += view.sole[i];
+    yaw_x += std::cos(leg(side).yaw(senses));
+    yaw_y += std::sin(leg(side).yaw(senses));
+    const auto corners = leg(side).sole_corners(senses, 0.0);
+    const auto moved_in = leg(side).sole_corners(senses, m(kEdge));
+    outer.insert(outer.end(), corners.begin(), corners.end());
+    inner.insert(inner.end(), moved_in.begin(), moved_in.end());
+  }
+  view.middle /= standing;
+  view.yaw = std::atan2(yaw_y, yaw_x);
+  const double heading = yaw_of(home_[0].rotation * Vec3::UnitX()) + view.yaw;
+  view.forward = forward_of(heading);
+  view.right = right_of(heading);
+  view.outer = convex_hull(std::move(outer));
+  view.inner = convex_hull(std::move(inner));
+  switch (phase_) {
+    case Phase::stand:
+      view.reference = view.middle + home_com_.x() * view.forward + home_com_.y() * view.right;
+      view.reference += landing_offset_;
+      break;
+    case Phase::shift:
+      view.reference = view.sole[ukemi::index(shift_to_)];
+      break;
+    case Phase::swing:
+      view.reference = view.sole[ukemi::index(other(swing_.side))];
+      break;
+  }
+  view.reference = into(view.inner, view.reference);
+  return view;
+}
+
+void Standing::start(const Senses& senses) {
+  start_com_ = on_ground(senses.com);
+  ask(senses, view_of(senses));
+}
+
+void Standing::observe(const Senses& senses, double h) {
+  choose(senses, view_of(senses), h);
+  const View view = view_of(senses);
+  watch(senses, view, h);
+  if (getenv("TRACE2")) fprintf(stderr,"t %.3f com %.3f %.3f h %.3f v %.3f %.3f %.3f L %.2f %.2f icp %.3f %.3f beyond %.3f ref %.3f %.3f press %.3f %.3f yaw %.2f tilt %.3f ph %d\n",senses.time_s,view.com.dot(view.forward)-view.sole[0].dot(view.forward),view.com.dot(view.right)-view.sole[0].dot(view.right),senses.com.y(),view.velocity.dot(view.forward),senses.com_velocity.y(),view.velocity.dot(view.right),senses.angular_momentum.x(),senses.angular_momentum.z(),(view.icp-view.sole[0]).dot(view.forward),(view.icp-view.sole[0]).dot(view.right),beyond(view.outer,view.icp),(view.reference-view.sole[0]).dot(view.forward),(view.reference-view.sole[0]).dot(view.right),(wanted_pressure(view)-view.sole[0]).dot(view.forward),(wanted_pressure(view)-view.sole[0]).dot(view.right),view.yaw,(senses.pose[0].rotation*home_[0].rotation.conjugate()*Vec3::UnitY()).y(),(int)phase_);
+  update_slow_state(senses, view, h);
+  ask(senses, view);
+}
+
+void Standing::drive(Goals& goals) const {
+  for (int j = 0; j < kJointCount; ++j)
+    goals.joints[j].insert(goals.joints[j].end(), asked_.joints[j].begin(), asked_.joints[j].end());
+  goals.firm_soles = goals.firm_soles || asked_.firm_soles;
+}
+
+// ---- the state machine
+
+void Standing::choose(const Senses& senses, const View& view, double h) {
+  if (lost_s_) {
+    if (phase_ == Phase::swing) swing_on(senses, view);
+    return;
+  }
+  switch (phase_) {
+    case Phase::stand:
+      return stand_on(senses, view, h);
+    case Phase::shift:
+      return shift_on(senses, view, h);
+    case Phase::swing:
+      return swing_on(senses, view);
+  }
+}
+
+double Standing::earliest_lift_s() const {
+  return std::max({s(kEarliestLift_s), landed_s_[0] + 0.01, landed_s_[1] + 0.01});
+}
+
+bool Standing::must_step(const View& view, double time_s) const {
+  return beyond(view.outer, view.icp_after(earliest_lift_s() - time_s)) > 0.0;
+}
+
+void Standing::stand_on(const Senses& senses, const View& view, double h) {
+  const double time_s = senses.time_s;
+  if (must_step(view, time_s)) {
+    ready_s_ = 0.0;
+    if (time_s < earliest_lift_s()) return;
+    if (steps_in_a_row_ >= settings_.most_steps) {
+      if (settings_.most_steps > 0) lost_s_ = time_s, lost_why_ = "steps";
+      return;
+    }
+    return lift(senses, view, stepping_foot(view), false);
+  }
+  if (settings_.most_steps == 0) return;
+  const auto hanging = hanging_foot(senses);
+  hanging_s_ = hanging ? hanging_s_ + h : 0.0;
+  if (hanging_s_ > s(0.1) && time_s > s(kEarliestLift_s)) {
+    const bool away = beyond(view.outer, view.icp) > m(0.05);
+    return lift(senses, view, *hanging, !away);
+  }
+  const bool slow = view.velocity.norm() < m_s(0.45) && beyond(view.outer, view.icp) < 0.0;
+  ready_s_ = slow && !stance_is_fine(view) && closings_ < 2 ? ready_s_ + h : 0.0;
+  if (ready_s_ < s(0.03) || active(time_s) < 1.0) return;
+  phase_ = Phase::shift;
+  shift_since_s_ = time_s;
+  shift_to_ =
+      (view.icp - view.sole[0]).norm() < (view.icp - view.sole[1]).norm() ? BodySide::left : BodySide::right;
+}
+
+/// Weight goes to one foot, so that the other can be brought home.
+void Standing::shift_on(const Senses& senses, const View& view, double) {
+  const double time_s = senses.time_s;
+  const double span = time_s - shift_since_s_;
+  if (must_step(view, time_s) && beyond(view.outer, view.icp) > 0.0) {
+    phase_ = Phase::stand;
+    return;
+  }
+  if (span > s(1.5)) {
+    phase_ = Phase::stand;
+    closings_ = 2;
+    return;
+  }
+  const auto corners = leg(shift_to_).sole_corners(senses, 0.0);
+  const double outside = beyond(convex_hull({corners.begin(), corners.end()}), view.icp);
+  const double brave = m(0.03) + m_s(0.3) * (span - s(0.2));
+  const bool wide = (view.sole[0] - view.sole[1]).norm() > m(0.25);
+  if (outside < (wide ? brave : m(-0.01) + std::max(0.0, brave - m(0.03))) && view.velocity.norm() < m_s(0.6))
+    lift(senses, view, other(shift_to_), true);
+}
+
+void Standing::lift(const Senses& senses, const View& view, BodySide side, bool closing) {
+  swing_ = {};
+  swing_.side = side;
+  swing_.closing = closing;
+  swing_.lift_s = senses.time_s;
+  swing_.from = senses.pose[ukemi::index(leg(side).foot)].translation;
+  swing_.from_foot = senses.pose[ukemi::index(leg(side).foot)].rotation;
+  swing_.from_sole = view.sole[ukemi::index(side)];
+  swing_.to = swing_.from_sole;
+  swing_.span_s = closing ? s(0.30) : swing_span(view, side);
+  phase_ = Phase::swing;
+  ready_s_ = hanging_s_ = 0.0;
+  landing_offset_ = Vec2::Zero();
+  (closing ? closings_ : steps_in_a_row_) += 1;
+  if (!closing) closings_ = 0;
+  steps_.push_back({leg(side).foot, senses.time_s, std::nullopt, 0.0});
+}
+
+void Standing::swing_on(const Senses& senses, const View& view) {
+  const double phase = (senses.time_s - swing_.lift_s) / swing_.span_s;
+  if (phase < 0.85) {
+    const double left = std::max(0.0, swing_.lift_s + swing_.span_s - senses.time_s);
+    swing_.to = swing_.closing ? closing_place(view, swing_.side) : landing_place(view, swing_.side, left);
+    const double back = std::clamp(view.yaw, -0.5, 0.5);
+    swing_.to_yaw = view.yaw - back;
+  }
+  if (phase > 0.5 && leg(swing_.side).touches(senses)) land(senses, view);
+}
+
+void Standing::land(const Senses& senses, const View& view) {
+  StepTaken& step = steps_.back();
+  step.contact_s = senses.time_s;
+  step.length_m = (view.sole[ukemi::index(swing_.side)] - swing_.from_sole).norm();
+  landed_s_[ukemi::index(swing_.side)] = senses.time_s;
+  phase_ = Phase::stand;
+  const View now = view_of(senses);
+  std::vector<Vec2> deep;
+  for (const BodySide side : kSides) {
+    const auto corners = leg(side).sole_corners(senses, m(0.04));
+    deep.insert(deep.end(), corners.begin(), corners.end());
+  }
+  landing_offset_ = into(convex_hull(std::move(deep)), now.icp) - now.reference;
+}
+
+/// A foot that hangs in the air or on its toe while the body is meant to stand.
+std::optional<BodySide> Standing::hanging_foot(const Senses& senses) const {
+  for (const BodySide side : kSides) {
+    const double ankle = senses.pose[ukemi::index(leg(side).foot)].translation.y();
+    if (ankle > leg(side).home_ankle_m + m(0.025)) return side;
+  }
+  return std::nullopt;
+}
+
+bool Standing::stance_is_fine(const View& view) const {
+  const Vec2 apart = view.sole[1] - view.sole[0];
+  const Vec2 home = home_sole_[1] - home_sole_[0];
+  const Vec2 now(apart.dot(view.forward), apart.dot(view.right));
+  if ((now - home).norm() < m(0.08)) return true;
+  const bool natural_home = home.y() < m(0.36) && std::abs(home.x()) < m(0.3);
+  return natural_home && now.y() > m(0.12) && now.y() < m(0.33) && std::abs(now.x()) < m(0.3);
+}
+
+BodySide Standing::stepping_foot(const View& view) const {
+  if (settings_.first_foot && steps_.empty()) return *settings_.first_foot;
+  return cost_of(view, BodySide::left) < cost_of(view, BodySide::right) ? BodySide::left : BodySide::right;
+}
+
+double Standing::cost_of(const View& view, BodySide swing) const {
+  const int standing = ukemi::index(other(swing));
+  const Vec2 place = landing_place(view, swing, s(settings_.swing_s));
+  const double own = sign(swing);
+  // The swinging foot does not cross the standing one.
+  const double across = std::max(0.0, -own * view.right_part(view.icp - view.sole[standing]));
+  const double too_far = std::max(0.0, (place - view.sole[standing]).norm() - 0.95 * physique_.leg_length_m);
+  const double travel = (place - view.sole[ukemi::index(swing)]).norm();
+  const double again = view.time_s - landed_s_[ukemi::index(swing)] < s(0.3) ? m(0.15) : 0.0;
+  return 5.0 * (across + too_far) + (place - view.sole[standing]).norm() + 0.3 * travel + again;
+}
+
+double Standing::swing_span(const View& view, BodySide swing) const {
+  const Vec2 from_standing = view.icp - view.sole[ukemi::index(other(swing))];
+  const double hurry = std::max(0.0, from_standing.norm() / physique_.size - 0.10 - 0.08);
+  return s(std::clamp(settings_.swing_s - 0.6 * hurry, kFastest_s, settings_.swing_s));
+}
+
+Vec2 Standing::landing_place(const View& view, BodySide swing, double time_left) const {
+  const Vec2& sole = view.sole[ukemi::index(other(swing))];
+  const double own = sign(swing);
+  const double rate = view.rate;
+  const Vec2 p = into(view.inner, view.icp);
+  const Vec2 icp = p + (view.icp - p) * std::exp(rate * time_left);
+  const double speed = view.velocity.norm();
+  Vec2 way =
+      0.855 * settings_.step_scale * (icp - sole) + m(0.04) * view.velocity / std::max(speed, m_s(0.4));
+  const double ahead = way.dot(view.forward);
+  double aside = own * view.right_part(way);
+  const double plain = aside;
+  aside = std::max(aside + 0.5 * m(0.083), m(0.11));
+  if (std::abs(ahead) > 0.6 * std::abs(plain)) aside = std::min(aside, m(settings_.narrow_m));
+  way = ahead * view.forward + own * aside * view.right;
+  const double longest = 0.95 * physique_.leg_length_m;
+  if (way.norm() > longest) way *= longest / way.norm();
+  return sole + way;
+}
+
+/// Beside the standing foot as at home.
+Vec2 Standing::closing_place(const View& view, BodySide swing) const {
+  const int own = ukemi::index(swing);
+  const int standing = ukemi::index(other(swing));
+  const Vec2 apart = home_sole_[own] - home_sole_[standing];
+  return view.sole[standing] + apart.x() * view.forward + apart.y() * view.right;
+}
+
+void Standing::watch(const Senses& senses, const View& view, double h) {
+  const double speed = view.velocity.norm();
+  const bool calm = phase_ == Phase::stand && speed < m_s(0.05) && !must_step(view, senses.time_s) &&
+                    (stance_is_fine(view) || closings_ >= 2 || settings_.most_steps == 0) &&
+                    !hanging_foot(senses);
+  calm_s_ = calm ? calm_s_ + h : 0.0;
+  if (calm_s_ > s(0.3)) {
+    steps_in_a_row_ = 0;
+    closings_ = 0;
+  }
+  if (lost_s_ || active(senses.time_s) <= 0.0) return;
+  const double reach = settings_.most_steps == 0 ? m(0.12) : 0.75 * physique_.leg_length_m;
+  const double tilt = (senses.pose[0].rotation * home_[0].rotation.conjugate() * Vec3::UnitY()).y();
+  const bool touches =
+      std::any_of(senses.contacts.begin(), senses.contacts.end(), [](const SegmentContact& c) {
+        return c.with == SegmentContact::With::floor && c.segment != Segment::foot_l &&
+               c.segment != Segment::foot_r;
+      });
+  const char* why = beyond(view.outer, view.icp) > reach         ? "icp"
+                    : senses.com.y() < 0.72 * home_height_ ? "low"
+                    : tilt < 0.5                           ? "tilt"
+                    : touches                              ? "touch"
+                                                           : nullptr;
+  if (why == nullptr) return;
+  lost_s_ = senses.time_s;
+  lost_why_ = why;
+}
+
+// ---- what is asked of the muscles
+
+void Standing::update_slow_state(const Senses& senses, const View& view, double h) {
+  const double time_s = senses.time_s;
+  const double since = time_s - std::max(landed_s_[0], landed_s_[1]);
+  const double home = std::min(legs_[0].home_straightness, legs_[1].home_straightness);
+  double wanted = home;
+  if (phase_ == Phase::shift)
+    wanted = 0.985;
+  else if (phase_ == Phase::swing || since < s(0.3))
+    wanted = 0.967;
+  else if (since < s(1.0))
+    wanted = 0.967 + (home - 0.967) * (since - s(0.3)) / s(0.7);
+  wanted = std::min(wanted, std::max(home, 0.967));
+  straightness_ += std::min(1.0, h / s(0.05)) * (wanted - straightness_);
+  heel_ += std::min(1.0, h / s(0.05)) * ((phase_ == Phase::shift ? 0.0 : 1.0) - heel_);
+  landing_offset_ *= std::exp(-h / s(1.5));
+  const double unsteady = std::clamp(0.3 + beyond(view.outer, view.icp) / m(0.1), 0.0, 1.0) * active(time_s);
+  const double span = unsteady > arms_up_ ? 0.12 : 0.5;
+  arms_up_ += std::min(1.0, h / s(span)) * (unsteady - arms_up_);
+}
+
+Vec2 Standing::wanted_pressure(const View& view) const {
+  const bool inside = beyond(view.outer, view.icp) < m(-0.01);
+  const bool calming = phase_ == Phase::stand && !steps_.empty() && inside;
+  Vec2 p = into(view.inner, view.icp + (calming ? kCalmPush : kPush) * (view.icp - view.reference));
+  const double lateral = view.right_part(view.icp - view.middle);
+  if (phase_ == Phase::stand && settings_.most_steps > 0 && must_step(view, view.time_s) &&
+      std::abs(lateral) < m(0.06)) {
+    // The foot that is going to swing pushes the body over the other.
+    const Vec2& sole = view.sole[ukemi::index(stepping_foot(view))];
+    p = into(view.inner, p + view.right_part(sole - p) * view.right);
+  }
+  const double b = active(view.time_s);
+  return b * p + (1.0 - b) * start_com_;
+}
+
+/// Height of the pelvis that the legs can hold.
+double Standing::pelvis_height(const Senses& senses, const View& view) const {
+  double height = home_[0].translation.y();
+  const Quat attitude = Quat(Eigen::AngleAxisd(view.yaw, Vec3::UnitY())) * home_[0].rotation;
+  const double right = view.stands[0] && view.stands[1]
+                           ? std::clamp((view.com - view.sole[0]).dot(view.sole[1] - view.sole[0]) /
+                                            std::max((view.sole[1] - view.sole[0]).squaredNorm(), 1e-6),
+                                        0.0, 1.0)
+                           : (view.stands[1] ? 1.0 : 0.0);
+  for (const BodySide side : kSides) {
+    const int i = ukemi::index(side);
+    if (!view.stands[i]) continue;
+    const double load = side == BodySide::right ? right : 1.0 - right;
+    const double rise = heel_ * std::clamp((0.5 - load) / 0.1, 0.0, 1.0);
+    const double reach = (straightness_ + rise * (kHeel - straightness_)) * leg(side).length_m();
+    const Vec3 hip = attitude * leg(side).hip_in_pelvis;
+    const Vec3& ankle = senses.pose[ukemi::index(leg(side).foot)].translation;
+    const double aside = (on_ground(senses.pose[0].translation + hip) - on_ground(ankle)).norm();
+    const double up = std::sqrt(std::max(reach * reach - aside * aside, 0.25 * reach * reach));
+    height = std::min(height, ankle.y() + up - hip.y());
+  }
+  return height;
+}
+
+Standing::Wrench Standing::wrench_of(const Senses& senses, const View& view) const {
+  const double b = active(view.time_s);
+  const double mass = physique_.mass_kg;
+  const double strength = physique_.strength * settings_.strength;
+  Wrench wrench;
+  const Vec2 p = wanted_pressure(view);
+  const double height = home_height_ - (home_[0].translation.y() - pelvis_height(senses, view));
+  const double lift = kLift / physique_.size * (height - senses.com.y()) -
+                      kLiftDamping / physique_.tempo * senses.com_velocity.y();
+  const double up =
+      mass * std::clamp(physique_.gravity + b * lift, 0.4 * physique_.gravity, 1.7 * physique_.gravity);
+  const Quat upright = Quat(Eigen::AngleAxisd(view.yaw, Vec3::UnitY())) * home_[0].rotation;
+  const Vec3 lean = log_rotation(senses.pose[0].rotation * upright.conjugate());
+  Vec3 moment = b * strength * (-kUpright * lean - kUprightDamping * senses.angular_velocity[0]);
+  const double most = kMostUpright * strength;
+  moment = moment.cwiseMax(-most).cwiseMin(most);
+  Vec2 along = up * (view.com - p) / view.height + Vec2(moment.z(), -moment.x()) / view.height;
+  if (along.norm() > 0.6 * up) along *= 0.6 * up / along.norm();
+  wrench.force = at_height(along, up);
+  if (!view.stands[0] || !view.stands[1]) {
+    const int standing = view.stands[0] ? 0 : 1;
+    wrench.share = {standing == 0 ? 1.0 : 0.0, standing == 1 ? 1.0 : 0.0};
+    wrench.pressure[standing] = p;
+    return wrench;
+  }
+  const Vec2 apart = view.sole[1] - view.sole[0];
+  const double right =
+      std::clamp((p - view.sole[0]).dot(apart) / std::max(apart.squaredNorm(), 1e-6), 0.06, 0.94);
+  wrench.share = {1.0 - right, right};
+  const Vec2 rest = p - (view.sole[0] + right * apart);
+  for (const BodySide side : kSides) {
+    const auto corners = leg(side).sole_corners(senses, 0.0);
+    wrench.pressure[ukemi::index(side)] =
+        into(convex_hull({corners.begin(), corners.end()}), view.sole[ukemi::index(side)] + rest);
+  }
+  return wrench;
+}
+
+LegPosture Standing::standing_posture(const Senses& senses, const View& view, BodySide side,
+                                      const Vec2& shift) const {
+  const Quat attitude = Quat(Eigen::AngleAxisd(view.yaw, Vec3::UnitY())) * home_[0].rotation;
+  const Vec3 pelvis = at_height(on_ground(senses.pose[0].translation) + shift, pelvis_y_);
+  const Vec3& ankle = senses.pose[ukemi::index(leg(side).foot)].translation;
+  return leg(side).reach(pelvis + attitude * leg(side).hip_in_pelvis, ankle, view.yaw, leg(side).yaw(senses));
+}
+
+Vec3 Standing::swing_ankle(double time_s) const {
+  const Leg& leg_in_air = leg(swing_.side);
+  const double phase = (time_s - swing_.lift_s) / swing_.span_s;
+  const Quat foot = Quat(Eigen::AngleAxisd(swing_.to_yaw, Vec3::UnitY())) * leg_in_air.home_foot;
+  const Vec3 target = at_height(swing_.to, 0.0) - foot * leg_in_air.sole_middle;
+  const double along = min_jerk(phase / 0.85);
+  const double bump = phase < 0.55 ? min_jerk(phase / 0.55) : 1.0 - min_jerk((phase - 0.55) / 0.45);
+  const double most = swing_.closing ? 0.05 : 0.09;
+  Vec3 at = swing_.from + along * (target - swing_.from);
+  at.y() += m(most) * bump - m_s(0.5) * std::max(0.0, time_s - swing_.lift_s - swing_.span_s);
+  return at;
+}
+
+LegPosture Standing::swinging_posture(const Vec3& hip_at, double time_s) const {
+  LegPosture posture = leg(swing_.side).reach(hip_at, swing_ankle(time_s), swing_.to_yaw, swing_.to_yaw);
+  const double phase = (time_s - swing_.lift_s) / swing_.span_s;
+  posture.foot = swing_.from_foot.slerp(min_jerk(phase / 0.8), posture.foot);
+  return posture;
+}
+
+void Standing::ask_joint(const Senses& senses, Joint joint, const Quat& goal, const Vec3& velocity,
+                         const Vec3& feed_forward, double share, double damping_s) {
+  if (physique_.fused[ukemi::index(joint)]) return;
+  const double before = kSpringsBefore + (1.0 - kSpringsBefore) * active(senses.time_s);
+  JointGoal asked;
+  asked.parent_from_child = goal;
+  asked.velocity = velocity;
+  asked.feed_forward_n_m = feed_forward;
+  asked.stiffness_n_m_rad = share * before * kStiffness[ukemi::index(joint)] * kEccentric *
+                            physique_.strength * settings_.strength / kFullAt;
+  asked.damping_n_m_s_rad = asked.stiffness_n_m_rad * damping_s;
+  asked.least_n_m.setConstant(-1e6);
+  asked.most_n_m.setConstant(1e6);
+  asked_.joints[ukemi::index(joint)].push_back(asked);
+}
+
+void Standing::ask_standing_leg(const Senses& senses, const View& view, const Wrench& wrench, BodySide side) {
+  const Leg& l = leg(side);
+  const int i = ukemi::index(side);
+  const double b = active(view.time_s);
+  const Vec2 moved = kAhead_s * view.velocity;
+  Vec2 shove = Vec2::Zero();
+  if (view.stands[0] && view.stands[1]) {
+    // Two straight legs share the load by their geometry alone: the far one is asked to be longer.
+    const bool shifting = phase_ == Phase::shift;
+    shove = b * (shifting ? 1.2 : 0.25) * (view.com - wanted_pressure(view));
+    const double most = m(shifting ? 0.15 : 0.06);
+    if (shove.norm() > most) shove *= most / shove.norm();
+  }
+  const LegPosture now = standing_posture(senses, view, side, shove);
+  const LegPosture next = standing_posture(senses, view, side, shove + moved);
+  const Quat attitude = Quat(Eigen::AngleAxisd(view.yaw, Vec3::UnitY())) * home_[0].rotation;
+  const double soft = 1.0 - 0.5 * (1.0 - std::clamp(2.0 * wrench.share[i], 0.15, 1.0));
+  const std::array<Joint, 3> joints = {l.hip, l.knee, l.ankle};
+  const std::array<Segment, 4> chain = {Segment::pelvis, l.thigh, l.shank, l.foot};
+  const std::array<Quat, 4> goal = {attitude, now.thigh, now.shank, now.foot};
+  const std::array<Quat, 4> soon = {attitude, next.thigh, next.shank, next.foot};
+  const std::array<double, 3> share = {0.76 * soft, 0.76 * soft, 0.25 * soft};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 at = joint_at(senses, joints[k]);
+    const Vec3 arm = at_height(wrench.pressure[i], 0.0) - at;
+    const Vec3 carried =
+        -(arm.cross(wrench.share[i] * wrench.force) + physique_.weight_torque(senses, joints[k]));
+    const Quat relative = goal[k].conjugate() * goal[k + 1];
+    const Quat later = soon[k].conjugate() * soon[k + 1];
+    const Quat& parent = senses.pose[ukemi::index(chain[k])].rotation;
+    const Quat home =
+        home_[ukemi::index(chain[k])].rotation.conjugate() * home_[ukemi::index(chain[k + 1])].rotation;
+    const Vec3 omega = b * (parent * log_rotation(later * relative.conjugate())) / kAhead_s;
+    ask_joint(senses, joints[k], home.slerp(b, relative), omega, carried, share[k], s(kDamping_s));
+  }
+}
+
+void Standing::ask_swinging_leg(const Senses& senses) {
+  const Leg& l = leg(swing_.side);
+  const Vec3 hip = joint_at(senses, l.hip);
+  const Vec3 hip_velocity = senses.velocity[0] + senses.angular_velocity[0].cross(hip - senses.centre[0]);
+  const LegPosture now = swinging_posture(hip, senses.time_s);
+  const LegPosture next = swinging_posture(hip + kAhead_s * hip_velocity, senses.time_s + kAhead_s);
+  const std::array<Joint, 3> joints = {l.hip, l.knee, l.ankle};
+  const std::array<Segment, 3> parents = {Segment::pelvis, l.thigh, l.shank};
+  const std::array<Quat, 3> goal = {now.thigh, now.shank, now.foot};
+  const std::array<Quat, 3> soon = {next.thigh, next.shank, next.foot};
+  const std::array<double, 3> share = {2.0, 2.0, 0.8};
+  for (int k = 0; k < 3; ++k) {
+    const int parent = ukemi::index(parents[k]);
+    const Vec3 omega =
+        log_rotation(soon[k] * goal[k].conjugate()) / kAhead_s - senses.angular_velocity[parent];
+    ask_joint(senses, joints[k], senses.pose[parent].rotation.conjugate() * goal[k], omega,
+              -physique_.weight_torque(senses, joints[k]), share[k], s(kSwingDamping_s));
+  }
+}
+
+void Standing::ask_upper_body(const Senses& senses) {
+  for (int j = 0; j <= ukemi::index(Joint::wrist_r); ++j) {
+    const Joint joint = ukemi::joint_at(j);
+    const BodySide side = is_left(joint) ? BodySide::left : BodySide::right;
+    const bool arm = is_left(joint) || is_right(joint);
+    Vec3 turn = flinch_.turn(joint, senses.time_s);
+    const double a = 0.5 * arms_up_ * settings_.arm_size[ukemi::index(side)];
+    if (joint == Joint::shoulder_l || joint == Joint::shoulder_r) turn += Vec3(-sign(side) * a, 0.0, 0.5 * a);
+    if (joint == Joint::elbow_l || joint == Joint::elbow_r) turn += Vec3(0.0, 0.0, 0.8 * a);
+    if (arm && !settings_.arms_free[ukemi::index(side)]) turn = Vec3::Zero();
+    const Quat home = home_[ukemi::index(parent_of(joint))].rotation.conjugate() *
+                      home_[ukemi::index(child_of(joint))].rotation;
+    ask_joint(senses, joint, exp_rotation(turn) * home, Vec3::Zero(), -physique_.weight_torque(senses, joint),
+              arm ? 0.35 : 0.5, s(kDamping_s));
+  }
+}
+
+void Standing::ask(const Senses& senses, const View& view) {
+  asked_.clear();
+  asked_.firm_soles = true;
+  pelvis_y_ = pelvis_height(senses, view);
+  const Wrench wrench = wrench_of(senses, view);
+  for (const BodySide side : kSides) {
+    if (view.stands[ukemi::index(side)])
+      ask_standing_leg(senses, view, wrench, side);
+    else
+      ask_swinging_leg(senses);
+  }
+  ask_upper_body(senses);
+}
+
+}  // namespace ukemi

@@ -1,0 +1,132 @@
+// Standing: balances on the feet, sways back, steps, and knows when balance is lost.
+//
+// One page of equations (an extrapolated centre of mass, a wanted ground wrench, springs towards postures of
+// the legs) and a small state machine. Lengths hold for legs of 0.857 m and are scaled by Physique::size,
+// times and speeds by its root.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "behave/flinch.h"
+#include "behave/legs.h"
+#include "behave/physique.h"
+#include "simulate/controller.h"
+
+namespace ukemi {
+
+struct StandSettings {
+  int most_steps = 6;       // of a recovery; 0: the feet stay where they are
+  double latency_s = 0.10;  // after the blow nothing but passive body and tone acts
+  double step_scale = 1.0;  // of the way to the capture point
+  double swing_s = 0.307;   // of an unhurried step
+  double narrow_m = 0.40;   // a step aside while going forward is at most so wide
+  double strength = 1.0;    // of the drives; a dazed body has less
+  std::optional<BodySide> first_foot;
+  PerSide<bool> arms_free{true, true};
+  PerSide<double> arm_size{1.1, 0.9};  // of catching arms
+  FlinchSettings flinch;
+};
+
+class Standing {
+ public:
+  /// `home`: the pose that is stood in: feet, height, joint angles.
+  Standing(const ArticulatedBody& body, const BodyPose& home, double gravity, const StandSettings& settings);
+
+  void start(const Senses& senses);
+  void observe(const Senses& senses, double h);
+  void drive(Goals& goals) const;
+
+  /// Why and when balance was lost: what follows is a fall.
+  const std::optional<double>& lost_s() const { return lost_s_; }
+  const std::string& lost_why() const { return lost_why_; }
+  bool calm() const { return calm_s_ > 0.0; }
+  const std::vector<StepTaken>& steps() const { return steps_; }
+  /// The leg that is in the air.
+  std::optional<BodySide> swinging() const;
+  const Physique& physique() const { return physique_; }
+
+ private:
+  enum class Phase { stand, shift, swing };
+  struct Swing {
+    BodySide side = BodySide::left;
+    double lift_s = 0.0, span_s = 0.3;
+    bool closing = false;
+    Vec3 from = Vec3::Zero();  // ankle at the lift
+    Quat from_foot = Quat::Identity();
+    Vec2 from_sole = Vec2::Zero();
+    Vec2 to = Vec2::Zero();  // sole
+    double to_yaw = 0.0;     // of the foot from home
+  };
+  struct View;
+  struct Wrench;
+
+  View view_of(const Senses& senses) const;
+  const Leg& leg(BodySide side) const { return legs_[ukemi::index(side)]; }
+  double m(double metres) const { return metres * physique_.size; }
+  double s(double seconds) const { return seconds * physique_.tempo; }
+  double m_s(double speed) const { return speed * physique_.tempo; }
+
+  // The state machine.
+  void choose(const Senses& senses, const View& view, double h);
+  void stand_on(const Senses& senses, const View& view, double h);
+  void shift_on(const Senses& senses, const View& view, double h);
+  void swing_on(const Senses& senses, const View& view);
+  bool must_step(const View& view, double time_s) const;
+  BodySide stepping_foot(const View& view) const;
+  double cost_of(const View& view, BodySide swing) const;
+  double swing_span(const View& view, BodySide swing) const;
+  void lift(const Senses& senses, const View& view, BodySide side, bool closing);
+  void land(const Senses& senses, const View& view);
+  Vec2 landing_place(const View& view, BodySide swing, double time_left) const;
+  Vec2 closing_place(const View& view, BodySide swing) const;
+  bool stance_is_fine(const View& view) const;
+  std::optional<BodySide> hanging_foot(const Senses& senses) const;
+  void watch(const Senses& senses, const View& view, double h);
+  double earliest_lift_s() const;
+
+  // What is asked of the muscles.
+  void ask(const Senses& senses, const View& view);
+  Wrench wrench_of(const Senses& senses, const View& view) const;
+  Vec2 wanted_pressure(const View& view) const;
+  double pelvis_height(const Senses& senses, const View& view) const;
+  LegPosture standing_posture(const Senses& senses, const View& view, BodySide side, const Vec2& shift) const;
+  LegPosture swinging_posture(const Vec3& hip_at, double time_s) const;
+  Vec3 swing_ankle(double time_s) const;
+  void ask_standing_leg(const Senses& senses, const View& view, const Wrench& wrench, BodySide side);
+  void ask_swinging_leg(const Senses& senses);
+  void ask_upper_body(const Senses& senses);
+  void ask_joint(const Senses& senses, Joint joint, const Quat& goal, const Vec3& velocity,
+                 const Vec3& feed_forward, double stiffness, double damping_s);
+  double active(double time_s) const;
+  void update_slow_state(const Senses& senses, const View& view, double h);
+
+  StandSettings settings_;
+  Physique physique_;
+  PerSide<Leg> legs_;
+  BodyPose home_;
+  Flinch flinch_;
+  PerSide<Vec2> home_sole_;
+  Vec2 home_com_ = Vec2::Zero();  // from the middle of the soles
+  double home_height_ = 0.0;      // of the centre of mass
+  Vec2 start_com_ = Vec2::Zero();
+
+  Phase phase_ = Phase::stand;
+  Swing swing_;
+  BodySide shift_to_ = BodySide::left;
+  double shift_since_s_ = 0.0, ready_s_ = 0.0, calm_s_ = 0.0, hanging_s_ = 0.0;
+  PerSide<double> landed_s_{-1e9, -1e9};
+  Vec2 landing_offset_ = Vec2::Zero();  // of the reference, fading after a landing
+  int steps_in_a_row_ = 0, closings_ = 0;
+  double straightness_ = 1.0;  // wanted of the legs
+  double heel_ = 1.0;          // 1: the less loaded heel may rise, 0: not
+  double pelvis_y_ = 0.0;      // wanted
+  double arms_up_ = 0.0;       // 0 to 1
+  std::vector<StepTaken> steps_;
+  std::optional<double> lost_s_;
+  std::string lost_why_;
+  Goals asked_;
+};
+
+}  // namespace ukemi
