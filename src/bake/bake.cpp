@@ -251,8 +251,7 @@ Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings&
 
 BehaviourSettings behaviour_settings(const BakeSettings& settings) {
   BehaviourSettings behaviour;
-  const bool fixed = settings.simulation.fixed_hz > 0.0;
-  behaviour.kind = settings.behaviour.value_or(fixed ? Behaviour::limp : Behaviour::alert);
+  behaviour.kind = settings.behaviour.value_or(Behaviour::limp);
   behaviour.most_steps = static_cast<int>(settings.most_steps);
   behaviour.latency_s = settings.latency_s;
   behaviour.muscle = settings.muscle;

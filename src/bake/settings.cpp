@@ -325,17 +325,18 @@ Settings behaviour_settings_table() {
                      "alert: balances, steps, protects itself; dazed: late and weak, at most one step; limp: "
                      "a body that nobody is in, which --tone stiffens at first",
                      [](auto& s) -> auto& { return s.behaviour; }),
-                 "alert, or limp with --rate fixed"),
+                 "limp"),
       number<S>(
           "steps", "N", Range{0.0, 20.0}, "recovery steps at most; 0: the feet stay planted",
           [](auto& s) -> auto& { return s.most_steps; }),
       number<S>(
           "muscle", "TIMES", Range{0.1, 10.0}, "muscle strength, of a healthy adult's",
           [](auto& s) -> auto& { return s.muscle; }),
-      with_unset(number<S>(
-                     "latency", "S", Range{0.0, 2.0}, "time from the blow to the first reaction of the balance",
-                     [](auto& s) -> auto& { return s.latency_s; }),
-                 "0.10, dazed 0.20"),
+      with_unset(
+          number<S>(
+              "latency", "S", Range{0.0, 2.0}, "time from the blow to the first reaction of the balance",
+              [](auto& s) -> auto& { return s.latency_s; }),
+          "0.10, dazed 0.20"),
   };
 }
 

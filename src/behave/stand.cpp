@@ -156,7 +156,6 @@ void Standing::observe(const Senses& senses, double h) {
   choose(senses, view_of(senses), h);
   const View view = view_of(senses);
   watch(senses, view, h);
-  if (getenv("TRACE2")) fprintf(stderr,"t %.3f com %.3f %.3f h %.3f v %.3f %.3f %.3f L %.2f %.2f icp %.3f %.3f beyond %.3f ref %.3f %.3f press %.3f %.3f yaw %.2f tilt %.3f ph %d\n",senses.time_s,view.com.dot(view.forward)-view.sole[0].dot(view.forward),view.com.dot(view.right)-view.sole[0].dot(view.right),senses.com.y(),view.velocity.dot(view.forward),senses.com_velocity.y(),view.velocity.dot(view.right),senses.angular_momentum.x(),senses.angular_momentum.z(),(view.icp-view.sole[0]).dot(view.forward),(view.icp-view.sole[0]).dot(view.right),beyond(view.outer,view.icp),(view.reference-view.sole[0]).dot(view.forward),(view.reference-view.sole[0]).dot(view.right),(wanted_pressure(view)-view.sole[0]).dot(view.forward),(wanted_pressure(view)-view.sole[0]).dot(view.right),view.yaw,(senses.pose[0].rotation*home_[0].rotation.conjugate()*Vec3::UnitY()).y(),(int)phase_);
   update_slow_state(senses, view, h);
   ask(senses, view);
 }
@@ -371,7 +370,7 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
         return c.with == SegmentContact::With::floor && c.segment != Segment::foot_l &&
                c.segment != Segment::foot_r;
       });
-  const char* why = beyond(view.outer, view.icp) > reach         ? "icp"
+  const char* why = beyond(view.outer, view.icp) > reach   ? "icp"
                     : senses.com.y() < 0.72 * home_height_ ? "low"
                     : tilt < 0.5                           ? "tilt"
                     : touches                              ? "touch"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "load/character_path.h"
 #include "bake/settings.h"
+#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -39,7 +39,8 @@ double cpu() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-ReactionRow run(const Character& character, BakeSettings settings, const std::string& segment, double azimuth, double n_s) {
+ReactionRow run(const Character& character, BakeSettings settings, const std::string& segment, double azimuth,
+                double n_s) {
   ReactionRow row;
   settings.hit = segment;
   settings.from = fmt::format("{:g}", azimuth);
@@ -65,8 +66,11 @@ ReactionRow run(const Character& character, BakeSettings settings, const std::st
   if (std::getenv("TRACE") != nullptr) {
     fmt::print("{} {} {}:", segment, azimuth, n_s);
     for (const StepTaken& step : result->behaviour.steps)
-      fmt::print(" {}[{:.2f} {:.2f} {:.2f}m]", name(step.foot), step.lift_s, step.contact_s.value_or(-1.0), step.length_m);
-    if (result->behaviour.fall_begins_s) fmt::print(" lost {:.2f} {}", *result->behaviour.fall_begins_s, result->behaviour.events.empty() ? "" : result->behaviour.events.front().name);
+      fmt::print(" {}[{:.2f} {:.2f} {:.2f}m]", name(step.foot), step.lift_s, step.contact_s.value_or(-1.0),
+                 step.length_m);
+    if (result->behaviour.fall_begins_s)
+      fmt::print(" lost {:.2f} {}", *result->behaviour.fall_begins_s,
+                 result->behaviour.events.empty() ? "" : result->behaviour.events.front().name);
     fmt::print(" rest {:.2f}\n", result->figures.rest_time_s.value_or(-1.0));
   }
   row.digit = row.fell ? 'F' : static_cast<char>('0' + std::min(9L, row.steps));
@@ -96,7 +100,8 @@ int main(int argc, char** argv) {
     const std::string option = argv[i];
     const auto equals = option.find('=');
     const auto setting = find_setting(option.substr(0, equals));
-    if (!setting || !(*setting)->set(settings, option.substr(equals + 1))) return fmt::print("{}?\n", option), 2;
+    if (!setting || !(*setting)->set(settings, option.substr(equals + 1)))
+      return fmt::print("{}?\n", option), 2;
   }
   Diagnostics diagnostics;
   const auto path = character_path(name);
@@ -147,8 +152,9 @@ int main(int argc, char** argv) {
   }
   const double n = static_cast<double>(segments.size() * directions.size());
   for (std::size_t m = 0; m < momenta.size(); ++m)
-    fmt::print("{:>4} N s: up {:3.0f} %, no step {:3.0f} %, steps {:.2f}, not at rest by 2.5 s {}\n", momenta[m], 100 * up[m] / n,
-               100 * none[m] / n, steps[m] / std::max(up[m], 1), late[m]);
-  fmt::print("over 1 deg {}, worst {:.2f}, gain {:.2f} J, share {:.2f}, separation {:.1f} mm, {:.0f} ms a run\n", over, excess, gain,
-             share, 1000 * separation, 1000 * cpu_s / static_cast<double>(jobs.size()));
+    fmt::print("{:>4} N s: up {:3.0f} %, no step {:3.0f} %, steps {:.2f}, not at rest by 2.5 s {}\n",
+               momenta[m], 100 * up[m] / n, 100 * none[m] / n, steps[m] / std::max(up[m], 1), late[m]);
+  fmt::print(
+      "over 1 deg {}, worst {:.2f}, gain {:.2f} J, share {:.2f}, separation {:.1f} mm, {:.0f} ms a run\n",
+      over, excess, gain, share, 1000 * separation, 1000 * cpu_s / static_cast<double>(jobs.size()));
 }
