@@ -255,6 +255,7 @@ BehaviourSettings behaviour_settings(const BakeSettings& settings) {
   behaviour.most_steps = static_cast<int>(settings.most_steps);
   behaviour.latency_s = settings.latency_s;
   behaviour.muscle = settings.muscle;
+  behaviour.seed = static_cast<std::uint64_t>(settings.seed);
   return behaviour;
 }
 

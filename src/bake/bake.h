@@ -56,6 +56,7 @@ struct BakeSettings {
   double most_steps = 6;               // of a recovery
   double muscle = 1.0;                 // strength, of a healthy adult's
   std::optional<double> latency_s;     // unless given: the behaviour's
+  double seed = 0;                     // varies stance, latency, arms and steps; 0: the mean of all
   // method
   std::string region = "human";        // name or file, see load_range_of_motion
   std::optional<RangeOfMotion> range;  // in place of the region's

@@ -337,6 +337,11 @@ Settings behaviour_settings_table() {
               "latency", "S", Range{0.0, 2.0}, "time from the blow to the first reaction of the balance",
               [](auto& s) -> auto& { return s.latency_s; }),
           "0.10, dazed 0.20"),
+      number<S>(
+          "seed", "N", Range{0.0, 4294967295.0},
+          "another take of the same blow: stance, latency, arms and steps vary as people do; 0: the mean of "
+          "all",
+          [](auto& s) -> auto& { return s.seed; }),
   };
 }
 

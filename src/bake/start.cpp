@@ -30,11 +30,11 @@ constexpr double kShortestRound = 0.2;   // s
 constexpr double kStillSpeed = 0.02;     // m/s
 
 Result<Pose> still_pose(const Character& character, const Humanoid& humanoid, const std::string& text,
-                        Diagnostics& diagnostics) {
+                        const StanceOptions& stance, Diagnostics& diagnostics) {
   const std::pair<std::string_view, StartPose> poses[] = {
       {"rest", StartPose::rest}, {"stand", StartPose::stand}, {"guard", StartPose::guard}};
   for (const auto& [word, pose] : poses)
-    if (word == text) return start_pose(character, humanoid, pose);
+    if (word == text) return start_pose(character, humanoid, pose, stance);
   if (names_motion_file(text)) return pose_of_file(character, humanoid, text, diagnostics);
   return usage_error(fmt::format("unknown pose '{}'", text),
                      suggestion(text, {"rest", "stand", "guard"}) + ", or name a .bvh, .glb or .fbx file");
@@ -175,7 +175,9 @@ Result<Start> start_of(const Character& character, const Humanoid& humanoid, con
     start = std::move(*from_motion);
   } else {
     start.name = settings.pose.value_or("stand");
-    auto pose = still_pose(character, humanoid, start.name, diagnostics);
+    const StanceOptions stance{behaviour_settings(settings).kind != Behaviour::limp,
+                               static_cast<std::uint64_t>(settings.seed)};
+    auto pose = still_pose(character, humanoid, start.name, stance, diagnostics);
     if (!pose) return pose.error();
     start.pose = std::move(*pose);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/random.h"
 #include "behave/alert.h"
 #include "behave/tone.h"
 
@@ -30,6 +31,24 @@ double momentum_of(const Scene& scene) {
   return 0.0;
 }
 
+/// Human spread: latency, arms, the width and the timing of steps.
+void vary(StandSettings& stand, std::uint64_t seed) {
+  Random random(seed);
+  const auto times = [&random](double& value, double spread) {
+    value *= random.uniform(1.0 - spread, 1.0 + spread);
+  };
+  times(stand.latency_s, 0.15);
+  times(stand.lift_s, 0.15);
+  times(stand.swing_s, 0.06);
+  times(stand.step_scale, 0.04);
+  for (double& arm : stand.arm_size) times(arm, 0.3);
+  times(stand.flinch.left_arm, 0.3);
+  times(stand.flinch.right_arm, 0.3);
+  times(stand.flinch.begins_s, 0.2);
+  times(stand.flinch.holds_until_s, 0.2);
+  stand.foot_bias_m = random.uniform(-0.06, 0.06);
+}
+
 StandSettings stand_settings(const ArticulatedBody& body, const Scene& scene,
                              const BehaviourSettings& asked) {
   const bool dazed = asked.kind == Behaviour::dazed;
@@ -39,6 +58,7 @@ StandSettings stand_settings(const ArticulatedBody& body, const Scene& scene,
   stand.strength = dazed ? kDazedStrength : 1.0;
   stand.arms_free = asked.arms_free;
   stand.flinch.way = scene.direction;
+  if (asked.seed != 0) vary(stand, asked.seed);
   stand.flinch.size = std::min(1.0, momentum_of(scene) / body.mass_kg / kFullFlinch_m_s);
   return stand;
 }

@@ -18,7 +18,7 @@ struct BehaviourSettings {
   int most_steps = 6;               // of a recovery; 0: the feet stay where they are
   std::optional<double> latency_s;  // unless given: 0.10, dazed 0.20
   double muscle = 1.0;              // strength, of a healthy adult's
-  unsigned seed = 0;                // varies latency, arms and steps; 0: none
+  std::uint64_t seed = 0;           // varies latency, arms and steps; 0: none
   PerSide<bool> arms_free{true, true};
 };
 

@@ -28,8 +28,8 @@ constexpr double kSpringsBefore = 0.6;  // before the reaction
 constexpr double kAhead_s = 0.004;      // postures are compared over so long
 
 // Steps.
-constexpr double kEarliestLift_s = 0.25;
-constexpr double kFastest_s = 0.20;
+constexpr double kFastest_s = 0.19;
+
 constexpr double kHeel = 1.03;  // of the leg, by the heel
 
 }  // namespace
@@ -184,7 +184,7 @@ void Standing::choose(const Senses& senses, const View& view, double h) {
 }
 
 double Standing::earliest_lift_s() const {
-  return std::max({s(kEarliestLift_s), landed_s_[0] + 0.01, landed_s_[1] + 0.01});
+  return std::max({s(settings_.lift_s), landed_s_[0] + 0.01, landed_s_[1] + 0.01});
 }
 
 bool Standing::must_step(const View& view, double time_s) const {
@@ -205,7 +205,7 @@ void Standing::stand_on(const Senses& senses, const View& view, double h) {
   if (settings_.most_steps == 0) return;
   const auto hanging = hanging_foot(senses);
   hanging_s_ = hanging ? hanging_s_ + h : 0.0;
-  if (hanging_s_ > s(0.1) && time_s > s(kEarliestLift_s)) {
+  if (hanging_s_ > s(0.1) && time_s > s(settings_.lift_s)) {
     const bool away = beyond(view.outer, view.icp) > m(0.05);
     return lift(senses, view, *hanging, !away);
   }
@@ -315,7 +315,8 @@ double Standing::cost_of(const View& view, BodySide swing) const {
   const double too_far = std::max(0.0, (place - view.sole[standing]).norm() - 0.95 * physique_.leg_length_m);
   const double travel = (place - view.sole[ukemi::index(swing)]).norm();
   const double again = view.time_s - landed_s_[ukemi::index(swing)] < s(0.3) ? m(0.15) : 0.0;
-  return 5.0 * (across + too_far) + (place - view.sole[standing]).norm() + 0.3 * travel + again;
+  return 5.0 * (across + too_far) + (place - view.sole[standing]).norm() + 0.3 * travel + again +
+         (swing == BodySide::left ? m(settings_.foot_bias_m) : 0.0);
 }
 
 double Standing::swing_span(const View& view, BodySide swing) const {
@@ -363,7 +364,7 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
     closings_ = 0;
   }
   if (lost_s_ || active(senses.time_s) <= 0.0) return;
-  const double reach = settings_.most_steps == 0 ? m(0.12) : 0.75 * physique_.leg_length_m;
+  const double reach = settings_.most_steps == 0 ? m(0.12) : 0.95 * physique_.leg_length_m;
   const double tilt = (senses.pose[0].rotation * home_[0].rotation.conjugate() * Vec3::UnitY()).y();
   const bool touches =
       std::any_of(senses.contacts.begin(), senses.contacts.end(), [](const SegmentContact& c) {
@@ -396,7 +397,7 @@ void Standing::update_slow_state(const Senses& senses, const View& view, double 
   wanted = std::min(wanted, std::max(home, 0.967));
   straightness_ += std::min(1.0, h / s(0.05)) * (wanted - straightness_);
   heel_ += std::min(1.0, h / s(0.05)) * ((phase_ == Phase::shift ? 0.0 : 1.0) - heel_);
-  landing_offset_ *= std::exp(-h / s(1.5));
+  landing_offset_ *= std::exp(-h / s(0.8));
   const double unsteady = std::clamp(0.3 + beyond(view.outer, view.icp) / m(0.1), 0.0, 1.0) * active(time_s);
   const double span = unsteady > arms_up_ ? 0.12 : 0.5;
   arms_up_ += std::min(1.0, h / s(span)) * (unsteady - arms_up_);

@@ -17,12 +17,14 @@
 namespace ukemi {
 
 struct StandSettings {
-  int most_steps = 6;       // of a recovery; 0: the feet stay where they are
-  double latency_s = 0.10;  // after the blow nothing but passive body and tone acts
-  double step_scale = 1.0;  // of the way to the capture point
-  double swing_s = 0.307;   // of an unhurried step
-  double narrow_m = 0.40;   // a step aside while going forward is at most so wide
-  double strength = 1.0;    // of the drives; a dazed body has less
+  int most_steps = 6;        // of a recovery; 0: the feet stay where they are
+  double latency_s = 0.10;   // after the blow nothing but passive body and tone acts
+  double lift_s = 0.21;      // earliest moment that a foot leaves the ground
+  double foot_bias_m = 0.0;  // cost of stepping with the left foot
+  double step_scale = 1.0;   // of the way to the capture point
+  double swing_s = 0.307;    // of an unhurried step
+  double narrow_m = 0.40;    // a step aside while going forward is at most so wide
+  double strength = 1.0;     // of the drives; a dazed body has less
   std::optional<BodySide> first_foot;
   PerSide<bool> arms_free{true, true};
   PerSide<double> arm_size{1.1, 0.9};  // of catching arms

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -115,8 +116,17 @@ Pose pose_skeleton(const Skeleton& skeleton, const Humanoid& humanoid, const Pos
 /// "rest": as the file has it. "stand": natural standing, arms hanging. "guard": fists up, feet apart.
 enum class StartPose { rest, stand, guard };
 
+/// How "stand" is stood in.
+struct StanceOptions {
+  /// As people do: the weight 3 cm ahead of the ankles, a foot a little ahead, more weight on one leg, unequal arms.
+  /// Otherwise even, the weight over the ankles.
+  bool living = false;
+  std::uint64_t seed = 0;  // varies a living stance; 0: the mean one
+};
+
 /// The start pose: facing and ground position of the reference pose, lowest sole point on the floor (y = 0).
-Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose kind);
+Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose kind,
+                const StanceOptions& stance = {});
 
 /// Moves the whole figure up or down so that its lowest foot stands on y = 0 (world).
 Pose stand_on_floor(const Character& character, const Humanoid& humanoid, const Pose& pose);

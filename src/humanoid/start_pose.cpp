@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <optional>
 
+#include "base/random.h"
 #include "humanoid/humanoid.h"
 #include "humanoid/landmarks.h"
 #include "humanoid/skin.h"
@@ -54,6 +55,55 @@ constexpr Stance kGuard = {-20.0,
                            {14.0, 30.0, 14.0, 120.0, 20.0, 4.0, 4.0, 0.0},
                            {0.08, 0.22, -2.0},
                            {0.10, -0.22, 18.0}};
+
+/// A number about `mean`, within `spread` either way; the mean itself without a seed.
+struct Variety {
+  explicit Variety(std::uint64_t seed) : seeded(seed != 0), random(seed) {}
+  double about(double mean, double spread) {
+    return seeded ? mean + spread * 0.5 * (random.uniform(-1.0, 1.0) + random.uniform(-1.0, 1.0)) : mean;
+  }
+  bool seeded;
+  Random random;
+};
+
+/// Standing at ease. The feet are behind the hips by the 3 cm (0.035 leg lengths) that people stand ahead of
+/// their ankles; a foot is 4 cm ahead, one knee and one elbow more bent, the pelvis 1 cm over one leg. A seed
+/// may exchange left and right.
+Stance living_stance(std::uint64_t seed) {
+  Variety vary(seed);
+  Stance s = kStand;
+  const double ahead = vary.about(0.023, 0.012);
+  const double back = vary.about(0.035, 0.008);
+  const double aside = vary.about(0.010, 0.006);
+  s.pelvis_drop = vary.about(0.9955, 0.0015);
+  s.leg_l = {0.018 + aside, -back + ahead, vary.about(8.0, 4.0)};
+  s.leg_r = {0.018 - aside, -back - ahead, vary.about(11.0, 4.0)};
+  s.pelvis_turn_deg = vary.about(-2.0, 2.5);
+  s.trunk_turn_deg = vary.about(2.0, 3.0);
+  s.neck_turn_deg = vary.about(-3.0, 5.0);
+  s.neck_flexion_deg = vary.about(2.0, 3.0);
+  s.arm_l = {vary.about(8.0, 2.0),
+             vary.about(6.0, 4.0),
+             4.0,
+             vary.about(21.0, 5.0),
+             vary.about(10.0, 6.0),
+             0.0,
+             0.0,
+             0.0};
+  s.arm_r = {vary.about(10.0, 2.0),
+             vary.about(1.0, 4.0),
+             4.0,
+             vary.about(12.0, 3.0),
+             vary.about(6.0, 6.0),
+             0.0,
+             0.0,
+             0.0};
+  if (!vary.seeded || vary.random.uniform(0.0, 1.0) < 0.5) return s;
+  std::swap(s.leg_l, s.leg_r);
+  std::swap(s.arm_l, s.arm_r);
+  for (double* turn : {&s.pelvis_turn_deg, &s.trunk_turn_deg, &s.neck_turn_deg}) *turn = -*turn;
+  return s;
+}
 
 struct Mover {
   const BodyPose& from;
@@ -268,8 +318,9 @@ std::optional<BodyPose> held_away(Stance stance, const BodyPose& from, double he
 }
 
 /// Standing with hanging arms, held away from a trunk that they would hang into where that helps.
-BodyPose stand(const Character& character, const Humanoid& humanoid, const BodyPose& from) {
-  const SkinSurface trunk(character, humanoid, from, body_in(kStand, from), [](Segment s) {
+BodyPose stand(const Character& character, const Humanoid& humanoid, const BodyPose& from,
+               const Stance& stance) {
+  const SkinSurface trunk(character, humanoid, from, body_in(stance, from), [](Segment s) {
     return is_trunk(s) || s == Segment::thigh_l || s == Segment::thigh_r;
   });
   const auto clearance = [&](const BodyPose& body) {
@@ -283,7 +334,7 @@ BodyPose stand(const Character& character, const Humanoid& humanoid, const BodyP
     return least;
   };
   const auto apart = [](ArmAngles& arm) { arm.abduction += 4.0; };
-  return held_away(kStand, from, humanoid.height_m, 11, clearance, apart).value_or(body_in(kStand, from));
+  return held_away(stance, from, humanoid.height_m, 11, clearance, apart).value_or(body_in(stance, from));
 }
 
 /// A guard; fists that would be in a large head are held before it or, where arms are too short for that,
@@ -310,11 +361,13 @@ BodyPose guard(const Character& character, const Humanoid& humanoid, const BodyP
 
 }  // namespace
 
-Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose kind) {
+Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose kind,
+                const StanceOptions& stance) {
   if (kind == StartPose::rest) return stand_on_floor(character, humanoid, rest_on_feet(character, humanoid));
   const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
-  const BodyPose to =
-      kind == StartPose::stand ? stand(character, humanoid, from) : guard(character, humanoid, from);
+  const BodyPose to = kind == StartPose::guard ? guard(character, humanoid, from)
+                                               : stand(character, humanoid, from,
+                                                       stance.living ? living_stance(stance.seed) : kStand);
   return stand_on_floor(character, humanoid,
                         pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, to));
 }

@@ -10,8 +10,10 @@ namespace {
 
 constexpr double kFullTorqueAt = 0.35;   // rad: error at which tone gives all its torque
 constexpr double kToneDamping_s = 0.12;  // damping over stiffness
-constexpr double kRise_s = 0.01;  // from nothing to full strength (truth: 75 to 85 % of the peak after 200 ms)
-constexpr double kLeastDamping = 1e-3;  // N m s: a row needs some
+constexpr double kRise_s =
+    0.2;  // from nothing to full strength (75 to 85 % of the peak after 200 ms in people)
+constexpr double kStretching_rad_s = 0.05;  // speed against the torque from which a muscle is stretched
+constexpr double kLeastDamping = 1e-3;      // N m s: a row needs some
 
 /// Rotation that takes the goal to the present rotation, world, rad.
 Vec3 error_to(const Model& model, const ModelJoint& joint, const Quat& parent_from_child) {
@@ -78,14 +80,18 @@ Muscle::Sum Muscle::sum_of(double h, const std::vector<JointGoal>& goals, const 
   return sum;
 }
 
-void Muscle::bound(double h, Sum& sum) const {
+void Muscle::bound(double h, const Vec3& omega, Sum& sum) const {
   for (int i = 0; i < 3; ++i) {
     sum.least[i] = std::max(sum.least[i], strength_.least_n_m[i]);
     sum.most[i] = std::min(sum.most[i], strength_.most_n_m[i]);
     if (!given_) continue;
-    // Growing takes time, letting go does not.
-    sum.most[i] = std::min(sum.most[i], std::max((*given_)[i], 0.0) + h / kRise_s * strength_.most_n_m[i]);
-    sum.least[i] = std::max(sum.least[i], std::min((*given_)[i], 0.0) + h / kRise_s * strength_.least_n_m[i]);
+    // Growing takes time, letting go does not; nor does holding against what stretches the muscle
+    // (short-range stiffness, tendons).
+    const double grown = h / kRise_s;
+    if (omega[i] > -kStretching_rad_s)
+      sum.most[i] = std::min(sum.most[i], std::max((*given_)[i], 0.0) + grown * strength_.most_n_m[i]);
+    if (omega[i] < kStretching_rad_s)
+      sum.least[i] = std::max(sum.least[i], std::min((*given_)[i], 0.0) + grown * strength_.least_n_m[i]);
   }
 }
 
@@ -99,8 +105,8 @@ void Muscle::prepare(double h, const std::vector<JointGoal>& goals) {
       (orientation(model_, joint_.parent) * model_.segment_in_body(parent_of(joint_.joint)).rotation)
           .toRotationMatrix();
   Sum sum = sum_of(h, goals, axes);
-  bound(h, sum);
   const Vec3 omega = relative_omega(model_, joint_);
+  bound(h, axes.transpose() * omega, sum);
   const Vec3 middle = 0.5 * (sum.least + sum.most);
   add_torque(model_, joint_, axes * middle);
   for (int i = 0; i < 3; ++i) {

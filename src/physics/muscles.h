@@ -58,7 +58,8 @@ class Muscle {
     Vec3 least = Vec3::Zero(), most = Vec3::Zero();
   };
   Sum sum_of(double h, const std::vector<JointGoal>& goals, const Mat3& axes) const;
-  void bound(double h, Sum& sum) const;
+  /// `omega`: parent axes.
+  void bound(double h, const Vec3& omega, Sum& sum) const;
 
   const Model& model_;
   const ModelJoint& joint_;

@@ -96,6 +96,7 @@ int main(int argc, char** argv) {
   const auto directions = split(argc > 4 ? argv[4] : "0,45,90,135,180,225,270,315");
   BakeSettings settings;
   settings.simulation.duration_s = 4.0;
+  settings.behaviour = Behaviour::alert;
   for (int i = 5; i < argc; ++i) {
     const std::string option = argv[i];
     const auto equals = option.find('=');
