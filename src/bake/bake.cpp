@@ -251,7 +251,8 @@ Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings&
 
 BehaviourSettings behaviour_settings(const BakeSettings& settings) {
   BehaviourSettings behaviour;
-  behaviour.kind = settings.behaviour.value_or(Behaviour::limp);
+  const bool fixed = settings.simulation.fixed_hz > 0.0;
+  behaviour.kind = settings.behaviour.value_or(fixed ? Behaviour::limp : Behaviour::alert);
   behaviour.most_steps = static_cast<int>(settings.most_steps);
   behaviour.latency_s = settings.latency_s;
   behaviour.muscle = settings.muscle;

@@ -325,7 +325,7 @@ Settings behaviour_settings_table() {
                      "alert: balances, steps, protects itself; dazed: late and weak, at most one step; limp: "
                      "a body that nobody is in, which --tone stiffens at first",
                      [](auto& s) -> auto& { return s.behaviour; }),
-                 "limp"),
+                 "alert, or limp with --rate fixed"),
       number<S>(
           "steps", "N", Range{0.0, 20.0}, "recovery steps at most; 0: the feet stay planted",
           [](auto& s) -> auto& { return s.most_steps; }),

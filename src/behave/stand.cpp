@@ -397,7 +397,7 @@ void Standing::update_slow_state(const Senses& senses, const View& view, double 
   wanted = std::min(wanted, std::max(home, 0.967));
   straightness_ += std::min(1.0, h / s(0.05)) * (wanted - straightness_);
   heel_ += std::min(1.0, h / s(0.05)) * ((phase_ == Phase::shift ? 0.0 : 1.0) - heel_);
-  landing_offset_ *= std::exp(-h / s(0.8));
+  landing_offset_ *= std::exp(-h / s(0.45));
   const double unsteady = std::clamp(0.3 + beyond(view.outer, view.icp) / m(0.1), 0.0, 1.0) * active(time_s);
   const double span = unsteady > arms_up_ ? 0.12 : 0.5;
   arms_up_ += std::min(1.0, h / s(span)) * (unsteady - arms_up_);

@@ -112,7 +112,7 @@ void Collision::accept_overlaps() {
   for (std::size_t p = 0; p < pairs_.size(); ++p) pairs_[p].accepted += now.depth[p];
 }
 
-Contacts Collision::find() const {
+Contacts Collision::find(bool whole_soles) const {
   Contacts found;
   found.depth.assign(pairs_.size(), 0.0);
   std::array<dContactGeom, kMaxContacts> buffer;
@@ -121,7 +121,8 @@ Contacts Collision::find() const {
     const Collider& a = colliders_[pair.a];
     const Collider& b = colliders_[pair.b];
     if (pair.a != 0 && !boxes_overlap(a.geom, b.geom)) continue;
-    const int most = a.box || b.box ? kMaxBoxContacts : kMaxContacts;
+    const bool sole = whole_soles && pair.kind == PairKind::floor && is_foot(b.segment);
+    const int most = (a.box || b.box) && !sole ? kMaxBoxContacts : kMaxContacts;
     const int count = dCollide(a.geom, b.geom, most, buffer.data(), sizeof(dContactGeom));
     for (int i = 0; i < count; ++i) {
       const dContactGeom& touch = buffer[i];

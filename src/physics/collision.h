@@ -47,7 +47,8 @@ class Collision {
   void add_prop(dGeomID geom, dBodyID body);
   /// Overlaps of the present pose that are no contact: shapes that fit a character may overlap at the start.
   void accept_overlaps();
-  Contacts find() const;
+  /// `whole_soles`: with every corner of the soles, so that a standing foot does not rock.
+  Contacts find(bool whole_soles = false) const;
   bool is_floor(std::size_t pair) const { return pairs_[pair].kind == PairKind::floor; }
   /// The same as the body feels them.
   std::vector<SegmentContact> felt(const Contacts& contacts) const;

@@ -93,6 +93,7 @@ void Physics::add_forces(double time_s, double h, const Goals& goals) {
 void Physics::step(double time_s, double h, const Goals& goals, const Contacts& contacts) {
   constexpr int kTries = 3;
   set_erp(h);
+  firm_soles_ = goals.firm_soles;
   all_rows_.assign(model_.joints().size(), false);
   for (int attempt = 0; attempt < kTries; ++attempt) {
     add_forces(time_s, h, goals);

@@ -64,7 +64,7 @@ class Physics {
   /// The segment that was fastest when the state was saved.
   Diverged fastest(double time_s, std::string how) const;
 
-  Contacts find_contacts() const { return collision_.find(); }
+  Contacts find_contacts() const { return collision_.find(firm_soles_); }
   bool is_floor(std::size_t pair) const { return collision_.is_floor(pair); }
   std::vector<double> joint_excesses() const;
   double worst_separation() const;
@@ -102,6 +102,7 @@ class Physics {
   std::vector<bool> all_rows_;
   std::vector<RigidState> saved_;
   double erp_h_ = 0.0;
+  bool firm_soles_ = false;  // asked for in the last step
   double muscle_share_ = 0.0, muscle_work_ = 0.0;
 };
 
