@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -17,6 +18,7 @@
 #include "bake/start.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "behave/ground.h"
 #include "body/ground.h"
 #include "clip/frames.h"
 #include "clip/ground_motion.h"
@@ -80,6 +82,37 @@ void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_t
     if (prop.poses.size() > frames) prop.poses.resize(frames);
 }
 
+/// Farthest that a segment is from another pose's, m (a radian counts as 0.5 m).
+double difference(const BodyPose& a, const BodyPose& b) {
+  constexpr double kPerRadian_m = 0.5;
+  double most = 0.0;
+  for (int s = 0; s < kSegmentCount; ++s)
+    most = std::max({most, (a[s].translation - b[s].translation).norm(),
+                     kPerRadian_m * angle_between(a[s].rotation, b[s].rotation)});
+  return most;
+}
+
+/// A body that has kept its feet in place comes back to where it started, but for a little: the last frames
+/// blend that away, so that the clip ends exactly in its start pose.
+void end_in_start_pose(const BodyPose& start, const ControllerReport& behaviour, Trajectory& trajectory) {
+  constexpr double kBlend_s = 0.15;
+  constexpr double kNear_m = 0.03;
+  const bool stayed = behaviour.steps.empty() && !behaviour.fall_begins_s;
+  if (!stayed || difference(trajectory.frames.back(), start) > kNear_m) return;
+  const auto span = static_cast<std::size_t>(std::lround(kBlend_s * trajectory.fps));
+  const std::size_t count = trajectory.frames.size();
+  if (count <= span + 1) return;
+  for (std::size_t i = count - span; i < count; ++i) {
+    const double share = min_jerk(static_cast<double>(i + 1 + span - count) / static_cast<double>(span));
+    for (int s = 0; s < kSegmentCount; ++s) {
+      Rigid& segment = trajectory.frames[i][s];
+      segment = {segment.rotation.slerp(share, start[s].rotation),
+                 segment.translation + share * (start[s].translation - segment.translation)};
+    }
+  }
+  trajectory.frames.back() = start;
+}
+
 Status check_clip_size(const Character& character, const BakeSettings& settings,
                        const Trajectory& trajectory) {
   const double frames = static_cast<double>(trajectory.frames.size()) +
@@ -89,6 +122,19 @@ Status check_clip_size(const Character& character, const BakeSettings& settings,
   return usage_error(fmt::format("{:.0f} frames of {:.0f} nodes are more than {:.0f} transforms", frames,
                                  nodes, kMostTransforms),
                      "give a shorter --duration or a lower --fps, or take a file with fewer nodes");
+}
+
+/// lift_left, contact_left, lift_right, ..., lift_left_2: when feet leave the ground and stand on it again.
+void add_step_marks(const std::vector<StepTaken>& steps, double end_s, std::vector<Mark>& marks) {
+  std::array<int, 2> taken{};
+  for (const StepTaken& step : steps) {
+    const bool left = step.foot == Segment::foot_l;
+    const int nth = ++taken[left ? 0 : 1];
+    const std::string side =
+        std::string(left ? "_left" : "_right") + (nth > 1 ? fmt::format("_{}", nth) : "");
+    if (step.lift_s <= end_s) marks.push_back({"lift" + side, step.lift_s});
+    if (step.contact_s && *step.contact_s <= end_s) marks.push_back({"contact" + side, *step.contact_s});
+  }
 }
 
 /// The clip on the character's own skeleton, where the file places the figure.
@@ -107,6 +153,9 @@ void make_clip(const Character& character, BakeOutcome& outcome) {
   const double end_s = outcome.clip.duration_s();
   if (figures.first_ground_contact_s && *figures.first_ground_contact_s <= end_s)
     outcome.clip.marks.push_back({"first_ground_contact", *figures.first_ground_contact_s});
+  add_step_marks(outcome.simulation.behaviour.steps, end_s, outcome.clip.marks);
+  const auto& fall = outcome.simulation.behaviour.fall_begins_s;
+  if (fall && *fall <= end_s) outcome.clip.marks.push_back({"fall_begins", *fall});
   if (figures.rest_time_s && *figures.rest_time_s <= end_s)
     outcome.clip.marks.push_back({"rest", *figures.rest_time_s});
 }
@@ -283,6 +332,9 @@ Result<BakeOutcome> bake(const Character& character, const BakeSettings& setting
   outcome.simulation = std::move(*simulation);
   if (settings.until_rest)
     trim_still_tail(outcome.simulation.trajectory, outcome.simulation.figures.rest_time_s, settings.hold_s);
+  if (outcome.behaviour.kind != Behaviour::limp)
+    end_in_start_pose(outcome.start.state.segments, outcome.simulation.behaviour,
+                      outcome.simulation.trajectory);
   outcome.timings_s.simulate = watch.lap();
   if (const Status status = check_clip_size(character, settings, outcome.simulation.trajectory); !status)
     return status.error();

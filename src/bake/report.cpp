@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/impact.h"
+#include "bake/response.h"
 #include "base/version.h"
 #include "clip/frames.h"
 #include "clip/smooth.h"
@@ -40,7 +41,7 @@ Json settings_json(const BakeSettings& settings, const BakeOutcome& outcome) {
   json["rate"] = rate_name(simulation.fixed_hz);
   json["duration_s"] = simulation.duration_s;
   json["fps"] = simulation.fps;
-  json["seed"] = nullptr;  // nothing in a bake is random
+  json["seed"] = static_cast<std::uint64_t>(settings.seed);
   const bool active = simulation.active != Active::off;
   json["active_k_1_s"] = active ? Json(simulation.active_k) : Json(nullptr);
   json["active_delay_s"] = active ? Json(simulation.active_delay_s) : Json(nullptr);
@@ -130,6 +131,45 @@ Json impact_json(const Character& character, const BakeSettings& settings, const
   json["push_force_n"] = push ? Json(scene.push_force_n) : Json(nullptr);
   json["push_duration_s"] = push ? Json(scene.push_duration_s) : Json(nullptr);
   json["floor_height_m"] = outcome.start.floor_m;
+  return json;
+}
+
+Json touch_json(const std::optional<TouchDown>& touch) {
+  if (!touch) return nullptr;
+  return {{"time_s", touch->time_s}, {"speed_m_s", touch->speed_m_s}};
+}
+
+Json steps_json(const std::vector<StepTaken>& steps) {
+  Json json = Json::array();
+  for (const StepTaken& step : steps)
+    json.push_back({{"foot", step.foot == Segment::foot_l ? "l" : "r"},
+                    {"lift_s", step.lift_s},
+                    {"contact_s", or_null(step.contact_s)},
+                    {"length_m", step.length_m}});
+  return json;
+}
+
+Json response_json(const BakeOutcome& outcome) {
+  const Response response = response_of(outcome);
+  const SimulationFigures& figures = outcome.simulation.figures;
+  const bool muscles = response.behaviour != Behaviour::limp;
+  Json json;
+  json["behaviour"] = name(response.behaviour);
+  json["outcome"] = name(response.outcome);
+  json["end_pose"] = name(response.end_pose);
+  json["steps"] = steps_json(response.steps);
+  json["fall_begins_s"] = or_null(response.fall_begins_s);
+  json["head_contact"] = touch_json(response.head);
+  json["pelvis_contact"] = touch_json(response.pelvis);
+  json["first_hand_contact"] = touch_json(response.hand);
+  json["foot_slide_max_m"] = response.foot_slide_max_m;
+  json["muscle_torque_max_share"] = muscles ? Json(figures.muscle_share_max) : Json(nullptr);
+  json["muscle_work_j"] = muscles ? Json(figures.muscle_work_j) : Json(nullptr);
+  json["get_up"] = nullptr;
+  json["travel_m"] = numbers(response.travel_m);
+  json["turn_deg"] = response.turn_deg;
+  json["delivered_n_s"] = figures.delivered_n_s;
+  json["trials"] = 1;
   return json;
 }
 
@@ -240,6 +280,7 @@ std::string report_json(const std::string& character, const Character& loaded, c
   json["settings"] = settings_json(settings, outcome);
   json["humanoid"] = humanoid_json(loaded, outcome);
   json["impact"] = impact_json(loaded, settings, outcome);
+  json["response"] = response_json(outcome);
   json["limits"] = limits_json(outcome);
   json["simulation"] = simulation_json(outcome.simulation.figures);
   json["clip"] = clip_json(loaded.skeleton, settings, outcome, reduced);

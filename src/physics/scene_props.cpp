@@ -119,6 +119,7 @@ void SceneProps::launch(dGeomID geom, const Vec3& at, const Vec3& velocity, cons
   prop.size = Vec3::Constant(2.0 * r);
   props_.push_back(prop);
   momentum_ = scene_.ball_mass_kg * velocity.norm();
+  carried_ = scene_.ball_mass_kg * scene_.direction.dot(velocity);
   impact_point_ = at + r * velocity.normalized();
 }
 
@@ -210,6 +211,13 @@ void SceneProps::apply(double time_s) const {
 double SceneProps::work(double time_s, double h) const {
   if (!pushing(time_s)) return 0.0;
   return h * scene_.push_force_n * std::max(0.0, scene_.direction.dot(vec3(dBodyGetLinearVel(target().id))));
+}
+
+double SceneProps::delivered_n_s(double time_s) const {
+  if (scene_.kind == SceneKind::push) return scene_.push_force_n * std::min(time_s, scene_.push_duration_s);
+  if (bodies_.empty()) return momentum_;
+  return carried_ -
+         inertias_.front().mass_kg * scene_.direction.dot(vec3(dBodyGetLinearVel(bodies_.front())));
 }
 
 double SceneProps::prop_energy() const {

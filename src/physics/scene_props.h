@@ -26,6 +26,8 @@ class SceneProps {
   /// Kinetic and potential energy of the props, J.
   double prop_energy() const;
   double momentum_n_s() const { return momentum_; }
+  /// What the body has received until `time_s`: what the missile has lost along the blow's way, N s.
+  double delivered_n_s(double time_s) const;
   Vec3 impact_point() const { return impact_point_; }
 
   /// Props that move, in the order of `props()`.
@@ -64,6 +66,7 @@ class SceneProps {
   Scene scene_;
   double gravity_;
   double momentum_ = 0.0;
+  double carried_ = 0.0;  // by the missile at the start, along the blow's way
   Vec3 impact_point_ = Vec3::Zero();
   std::vector<dBodyID> bodies_;
   std::vector<Inertia> inertias_;

@@ -11,6 +11,7 @@ namespace ukemi {
 namespace {
 
 constexpr double kAfterBlow_s = 1.0;   // after the blow
+constexpr double kContact_s = 0.3;     // within which a blow is over
 constexpr double kJitterSpan_s = 0.5;  // before the end
 
 }  // namespace
@@ -96,6 +97,23 @@ void Recorder::step(double time_s, double h, const Contacts& contacts, double ex
   }
   turning_.push_back({time_s, h, mean_square});
   hash_state();
+}
+
+void Recorder::touches(const Senses& senses) {
+  for (const SegmentContact& contact : senses.contacts) {
+    if (contact.with != SegmentContact::With::floor) continue;
+    const int s = index(contact.segment);
+    if (!before_) stood_[s] = true;
+    if (stood_[s] || figures_.touch_down[s]) continue;
+    const Vec3 velocity =
+        before_->velocity[s] + before_->angular_velocity[s].cross(contact.place - before_->centre[s]);
+    figures_.touch_down[s] = TouchDown{senses.time_s, std::max(0.0, -velocity.y())};
+  }
+  before_ = senses;
+}
+
+void Recorder::delivered(double time_s, double n_s) {
+  if (time_s <= kContact_s) figures_.delivered_n_s = std::max(figures_.delivered_n_s, n_s);
 }
 
 double Recorder::root_mean_square_turning(double from_s, double to_s) const {

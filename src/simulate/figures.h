@@ -7,6 +7,7 @@
 
 #include "physics/collision.h"
 #include "physics/model.h"
+#include "physics/senses.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {
@@ -30,6 +31,11 @@ class Recorder {
     figures_.muscle_share_max = std::max(figures_.muscle_share_max, share);
     figures_.muscle_work_j = work_j;
   }
+
+  /// Senses at the start and after an accepted step.
+  void touches(const Senses& senses);
+  /// What the blow has given so far, N s.
+  void delivered(double time_s, double n_s);
 
   double energy_gain_j() const { return figures_.energy_gain_max_j; }
   LimitFigures limits(bool projected) const;
@@ -55,6 +61,8 @@ class Recorder {
   double lowest_energy_, work_ = 0.0;
   double momentum_time_ = 0.0, momentum_integral_ = 0.0, airborne_ = 0.0;
   std::vector<Turning> turning_;
+  PerSegment<bool> stood_{};  // on the floor at the start
+  std::optional<Senses> before_;
   std::uint64_t hash_ = 14695981039346656037ull;  // FNV-1a
 };
 

@@ -157,6 +157,8 @@ void Simulation::accept(int ticks, const StepResult& step, double projected, Con
 void Simulation::observe(double h) {
   const bool rested = rest_.since_s().has_value();
   const Senses senses = physics_.senses(time_s(), contacts_);
+  recorder_.touches(senses);
+  recorder_.delivered(time_s(), physics_.scene().delivered_n_s(time_s()));
   if (controller_) controller_->observe(senses, h);
   rest_.observe(time_s(), h, senses.fastest_m_s, senses.fastest_turning_rad_s);
   if (!rested && rest_.since_s()) recorder_.rest(*rest_.since_s());
@@ -172,7 +174,9 @@ void Simulation::run(Diagnostics& diagnostics) {
   frames_->trajectory.impact_direction = direction_;
   most_energy_j_ += kBlowShare * std::abs(scene.prop_energy());
   recorder_.step(0.0, 0.0, contacts_, scene.prop_energy(), 0.0, 0.0);
-  if (controller_) controller_->start(physics_.senses(0.0, contacts_));
+  const Senses senses = physics_.senses(0.0, contacts_);
+  recorder_.touches(senses);
+  if (controller_) controller_->start(senses);
   try {
     run_to_end();
   } catch (const OdeFailure& failure) {

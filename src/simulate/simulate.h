@@ -50,6 +50,12 @@ struct LimitFigures {
   bool projected = false;
 };
 
+/// When something first came down on the floor, and how fast.
+struct TouchDown {
+  double time_s = 0.0;
+  double speed_m_s = 0.0;  // of the point that touched, towards the floor, just before
+};
+
 struct SimulationFigures {
   long steps = 0;
   long rejected_steps = 0;
@@ -60,11 +66,13 @@ struct SimulationFigures {
   std::optional<double> rest_time_s;
   double jitter_rad_s = 0.0;      // RMS angular velocity over the last 0.5 s (0 once stopped at rest)
   double momentum_n_s = 0.0;      // of the blow
+  double delivered_n_s = 0.0;     // of it, what the body received
   double muscle_share_max = 0.0;  // of a joint's strength that a behaviour's muscles gave
   double muscle_work_j = 0.0;     // of those muscles, either way
-  std::optional<double> first_ground_contact_s;  // of anything but the feet
-  double angular_momentum_mean_kg_m2_s = 0.0;    // about the centre of mass, mean over 1 s after the blow
-  double airborne_mean_s = 0.0;                  // time without ground contact after the blow
+  std::optional<double> first_ground_contact_s;     // of anything but the feet
+  PerSegment<std::optional<TouchDown>> touch_down;  // of what did not stand on the floor at the start
+  double angular_momentum_mean_kg_m2_s = 0.0;       // about the centre of mass, mean over 1 s after the blow
+  double airborne_mean_s = 0.0;                     // time without ground contact after the blow
   double turning_mean_rad_s = 0.0;       // RMS angular velocity of the segments over 1 s after the blow
   double floor_penetration_end_m = 0.0;  // at the last step
   std::string hash;                      // of every state of the run

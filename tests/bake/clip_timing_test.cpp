@@ -109,6 +109,7 @@ TEST(Recovery, EndsInTheStartPoseOnTheFloorWithoutAPop) {
 
 TEST(Recovery, OfWhoLiesGetsUpWhereHeIsAndStaysAboveTheFloor) {
   BakeSettings settings;
+  settings.behaviour = Behaviour::limp;
   settings.recover_s = 1.5;
   const BakeOutcome outcome = baked(settings);
   const auto& frames = outcome.clip.frames;

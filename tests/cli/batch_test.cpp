@@ -254,6 +254,9 @@ TEST_F(Batch, AWorkerThatTakesTooLongIsToldAsTheReason) {
 }
 
 TEST_F(Batch, RejectsWhatLeavesTheRangeOrDoesNotSettle) {
+  std::string limp = kRecipe;
+  limp.replace(limp.find("[settings]"), 10, "[settings]\nbehaviour = \"limp\"");
+  write("r.toml", limp);
   const Ran ran = batch("out", {"--reject-unsettled"});
   EXPECT_EQ(ran.status, 1);
   EXPECT_NE(ran.out.find("0 done, 8 rejected, 0 failed"), std::string::npos) << ran.out;

@@ -1,0 +1,143 @@
+#include "bake/response.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "behave/ground.h"
+#include "behave/legs.h"
+
+namespace ukemi {
+namespace {
+
+constexpr double kStandingShare = 0.75;  // of the pelvis's height at the start
+constexpr double kOffFloor_m = 0.012;    // a sole whose lowest corner is higher stands no more
+constexpr double kSettling_s = 0.05;     // of a plant
+
+std::optional<TouchDown> earlier(const std::optional<TouchDown>& a, const std::optional<TouchDown>& b) {
+  if (!a || !b) return a ? a : b;
+  return a->time_s <= b->time_s ? a : b;
+}
+
+/// Ways of a sole's corners while it stands.
+class Plant {
+ public:
+  /// How far the least moved corner has gone.
+  double stand(const std::array<Vec2, 4>& corners, double time_s) {
+    if (!since_s_) since_s_ = time_s;
+    if (time_s - *since_s_ < kSettling_s) {
+      from_ = corners;
+      most_.fill(0.0);
+      return 0.0;
+    }
+    for (int i = 0; i < 4; ++i) most_[i] = std::max(most_[i], (corners[i] - from_[i]).norm());
+    return *std::min_element(most_.begin(), most_.end());
+  }
+  void lift() { since_s_.reset(); }
+
+ private:
+  std::optional<double> since_s_;
+  std::array<Vec2, 4> from_{};
+  std::array<double, 4> most_{};
+};
+
+double slide_of(const Leg& leg, const Trajectory& trajectory, double until_s) {
+  Plant plant;
+  double most = 0.0;
+  for (std::size_t f = 0; f < trajectory.frames.size(); ++f) {
+    const double time_s = static_cast<double>(f) / trajectory.fps;
+    if (time_s > until_s) break;
+    const Rigid& foot = trajectory.frames[f][index(leg.foot)];
+    std::array<Vec2, 4> corners;
+    double lowest = 1e9;
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 corner = foot * leg.sole[i];
+      corners[i] = on_ground(corner);
+      lowest = std::min(lowest, corner.y());
+    }
+    if (lowest > kOffFloor_m)
+      plant.lift();
+    else
+      most = std::max(most, plant.stand(corners, time_s));
+  }
+  return most;
+}
+
+}  // namespace
+
+std::string_view name(Behaviour behaviour) {
+  constexpr std::string_view kNames[] = {"alert", "dazed", "limp"};
+  return kNames[static_cast<int>(behaviour)];
+}
+
+std::string_view name(Outcome outcome) {
+  constexpr std::string_view kNames[] = {"stood", "stepped", "fell"};
+  return kNames[static_cast<int>(outcome)];
+}
+
+std::string_view name(FinalPose pose) {
+  constexpr std::string_view kNames[] = {"standing", "kneeling",  "seated",    "supine",
+                                         "prone",    "left_side", "right_side"};
+  return kNames[static_cast<int>(pose)];
+}
+
+FinalPose final_pose_of(const BodyPose& start, const BodyPose& end) {
+  const Rigid& pelvis = end[index(Segment::pelvis)];
+  const Quat& chest = end[index(Segment::chest)].rotation;
+  const double height = pelvis.translation.y() / start[index(Segment::pelvis)].translation.y();
+  const double upright = (chest * Vec3::UnitY()).y();
+  if (height > kStandingShare && upright > 0.3) return FinalPose::standing;
+  const double knee =
+      std::min(end[index(Segment::shank_l)].translation.y(), end[index(Segment::shank_r)].translation.y()) /
+      start[index(Segment::pelvis)].translation.y();
+  if (upright > 0.6 && height > 0.35 && knee < 0.2) return FinalPose::kneeling;
+  if (upright > 0.5) return FinalPose::seated;
+  const double front = (chest * Vec3::UnitX()).y();
+  if (std::abs(front) > 0.6) return front > 0.0 ? FinalPose::supine : FinalPose::prone;
+  return (chest * Vec3::UnitZ()).y() < 0.0 ? FinalPose::right_side : FinalPose::left_side;
+}
+
+double foot_slide(const ArticulatedBody& body, const Trajectory& trajectory, double until_s) {
+  double most = 0.0;
+  for (const BodySide side : kSides)
+    most = std::max(most, slide_of(Leg(body, trajectory.frames.front(), side), trajectory, until_s));
+  return most;
+}
+
+Response response_of(const BakeOutcome& outcome) {
+  const SimulationFigures& figures = outcome.simulation.figures;
+  const ControllerReport& report = outcome.simulation.behaviour;
+  const Trajectory& trajectory = outcome.simulation.trajectory;
+  const auto first = static_cast<std::size_t>(std::lround(outcome.impact_s * trajectory.fps));
+  const auto touched = [&](Segment s) {
+    auto touch = figures.touch_down[index(s)];
+    if (touch) touch->time_s += outcome.impact_s;
+    return touch;
+  };
+  Response response;
+  response.behaviour = outcome.behaviour.kind;
+  response.steps = report.steps;
+  for (StepTaken& step : response.steps) {
+    step.lift_s += outcome.impact_s;
+    if (step.contact_s) *step.contact_s += outcome.impact_s;
+  }
+  if (report.fall_begins_s) response.fall_begins_s = outcome.impact_s + *report.fall_begins_s;
+  response.head = touched(Segment::head);
+  response.pelvis = touched(Segment::pelvis);
+  response.hand = earlier(touched(Segment::hand_l), touched(Segment::hand_r));
+  const BodyPose& start = trajectory.frames[std::min(first, trajectory.frames.size() - 1)];
+  const BodyPose& end = trajectory.frames.back();
+  response.end_pose = final_pose_of(outcome.start.state.segments, end);
+  response.outcome = response.end_pose != FinalPose::standing || response.fall_begins_s ? Outcome::fell
+                     : response.steps.empty()                                           ? Outcome::stood
+                                                                                        : Outcome::stepped;
+  response.foot_slide_max_m = foot_slide(
+      outcome.body, trajectory, response.fall_begins_s.value_or(std::numeric_limits<double>::infinity()));
+  response.travel_m = end[0].translation - start[0].translation;
+  response.turn_deg =
+      degrees(wrapped(yaw_of(end[0].rotation * Vec3::UnitX()) - yaw_of(start[0].rotation * Vec3::UnitX())));
+  return response;
+}
+
+}  // namespace ukemi

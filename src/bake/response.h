@@ -1,0 +1,40 @@
+// How a body responded to its blow, read from the simulation.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "bake/bake.h"
+
+namespace ukemi {
+
+enum class Outcome { stood, stepped, fell };
+enum class FinalPose { standing, kneeling, seated, supine, prone, left_side, right_side };
+std::string_view name(Behaviour behaviour);
+std::string_view name(Outcome outcome);
+std::string_view name(FinalPose pose);
+
+/// Times are the clip's, from its beginning.
+struct Response {
+  Behaviour behaviour = Behaviour::alert;
+  Outcome outcome = Outcome::stood;
+  FinalPose end_pose = FinalPose::standing;
+  std::vector<StepTaken> steps;
+  std::optional<double> fall_begins_s;
+  std::optional<TouchDown> head, pelvis, hand;  // first on the floor
+  double foot_slide_max_m = 0.0;  // of a sole's least moved corner while it stands, until the body falls
+  Vec3 travel_m = Vec3::Zero();   // of the pelvis
+  double turn_deg = 0.0;          // of the pelvis, to the left
+};
+
+/// What the last frame of a motion that began upright shows.
+FinalPose final_pose_of(const BodyPose& start, const BodyPose& end);
+
+/// Largest way of the least moved corner of a sole while it stands on the floor for more than 50 ms, from 50
+/// ms after it touched, up to `until_s`, m.
+double foot_slide(const ArticulatedBody& body, const Trajectory& trajectory, double until_s);
+
+Response response_of(const BakeOutcome& outcome);
+
+}  // namespace ukemi
