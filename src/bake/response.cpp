@@ -12,7 +12,7 @@ namespace ukemi {
 namespace {
 
 constexpr double kStandingShare = 0.75;  // of the pelvis's height at the start
-constexpr double kOffFloor_m = 0.012;    // a sole whose lowest corner is higher stands no more
+constexpr double kOffFloor_m = 0.004;    // a sole whose lowest corner is higher stands no more
 constexpr double kSettling_s = 0.05;     // of a plant
 
 std::optional<TouchDown> earlier(const std::optional<TouchDown>& a, const std::optional<TouchDown>& b) {

@@ -24,13 +24,14 @@ constexpr double kStiffness[] = {220.0, 160.0, 40.0,  70.0,  70.0,  60.0,  12.0,
 constexpr double kFullAt = 0.35;  // rad
 constexpr double kEccentric = 1.2;
 constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
-constexpr double kSpringsBefore = 0.6;  // before the reaction
-constexpr double kAhead_s = 0.004;      // postures are compared over so long
+constexpr double kAhead_s = 0.004;  // postures are compared over so long
 
 // Steps.
-constexpr double kFastest_s = 0.19;
+constexpr double kFastest_s = 0.22;
 
-constexpr double kHeel = 1.03;  // of the leg, by the heel
+constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point so far beyond the feet
+constexpr double kLongestStep = 1.03;  // of the leg
+constexpr double kHeel = 1.03;         // of the leg, by the heel
 
 }  // namespace
 
@@ -265,7 +266,9 @@ void Standing::swing_on(const Senses& senses, const View& view) {
     const double back = std::clamp(view.yaw, -0.5, 0.5);
     swing_.to_yaw = view.yaw - back;
   }
-  if (phase > 0.5 && leg(swing_.side).touches(senses)) land(senses, view);
+  const bool touches = leg(swing_.side).touches(senses);
+  swing_.in_air = swing_.in_air || !touches;
+  if (touches && phase > (swing_.in_air ? 0.5 : 0.95)) land(senses, view);
 }
 
 void Standing::land(const Senses& senses, const View& view) {
@@ -297,8 +300,10 @@ bool Standing::stance_is_fine(const View& view) const {
   const Vec2 home = home_sole_[1] - home_sole_[0];
   const Vec2 now(apart.dot(view.forward), apart.dot(view.right));
   if ((now - home).norm() < m(0.08)) return true;
-  const bool natural_home = home.y() < m(0.36) && std::abs(home.x()) < m(0.3);
-  return natural_home && now.y() > m(0.12) && now.y() < m(0.33) && std::abs(now.x()) < m(0.3);
+  // As people stand, or as wide and staggered as at home.
+  const double widest = std::max(m(0.33), home.y() + m(0.08));
+  const double longest = std::max(m(0.30), std::abs(home.x()) + m(0.08));
+  return now.y() > m(0.12) && now.y() < widest && std::abs(now.x()) < longest;
 }
 
 BodySide Standing::stepping_foot(const View& view) const {
@@ -340,7 +345,7 @@ Vec2 Standing::landing_place(const View& view, BodySide swing, double time_left)
   aside = std::max(aside + 0.5 * m(0.083), m(0.11));
   if (std::abs(ahead) > 0.6 * std::abs(plain)) aside = std::min(aside, m(settings_.narrow_m));
   way = ahead * view.forward + own * aside * view.right;
-  const double longest = 0.95 * physique_.leg_length_m;
+  const double longest = kLongestStep * physique_.leg_length_m;
   if (way.norm() > longest) way *= longest / way.norm();
   return sole + way;
 }
@@ -364,7 +369,7 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
     closings_ = 0;
   }
   if (lost_s_ || active(senses.time_s) <= 0.0) return;
-  const double reach = settings_.most_steps == 0 ? m(0.12) : 0.95 * physique_.leg_length_m;
+  const double reach = settings_.most_steps == 0 ? m(0.12) : kOutOfReach * physique_.leg_length_m;
   const double tilt = (senses.pose[0].rotation * home_[0].rotation.conjugate() * Vec3::UnitY()).y();
   const bool touches =
       std::any_of(senses.contacts.begin(), senses.contacts.end(), [](const SegmentContact& c) {
@@ -508,16 +513,15 @@ LegPosture Standing::swinging_posture(const Vec3& hip_at, double time_s) const {
   return posture;
 }
 
-void Standing::ask_joint(const Senses& senses, Joint joint, const Quat& goal, const Vec3& velocity,
-                         const Vec3& feed_forward, double share, double damping_s) {
+void Standing::ask_joint(Joint joint, const Quat& goal, const Vec3& velocity, const Vec3& feed_forward,
+                         double share, double damping_s) {
   if (physique_.fused[ukemi::index(joint)]) return;
-  const double before = kSpringsBefore + (1.0 - kSpringsBefore) * active(senses.time_s);
   JointGoal asked;
   asked.parent_from_child = goal;
   asked.velocity = velocity;
   asked.feed_forward_n_m = feed_forward;
-  asked.stiffness_n_m_rad = share * before * kStiffness[ukemi::index(joint)] * kEccentric *
-                            physique_.strength * settings_.strength / kFullAt;
+  asked.stiffness_n_m_rad = share * kStiffness[ukemi::index(joint)] * kEccentric * physique_.strength *
+                            settings_.strength / kFullAt;
   asked.damping_n_m_s_rad = asked.stiffness_n_m_rad * damping_s;
   asked.least_n_m.setConstant(-1e6);
   asked.most_n_m.setConstant(1e6);
@@ -557,7 +561,7 @@ void Standing::ask_standing_leg(const Senses& senses, const View& view, const Wr
     const Quat home =
         home_[ukemi::index(chain[k])].rotation.conjugate() * home_[ukemi::index(chain[k + 1])].rotation;
     const Vec3 omega = b * (parent * log_rotation(later * relative.conjugate())) / kAhead_s;
-    ask_joint(senses, joints[k], home.slerp(b, relative), omega, carried, share[k], s(kDamping_s));
+    ask_joint(joints[k], home.slerp(b, relative), omega, carried, share[k], s(kDamping_s));
   }
 }
 
@@ -576,7 +580,7 @@ void Standing::ask_swinging_leg(const Senses& senses) {
     const int parent = ukemi::index(parents[k]);
     const Vec3 omega =
         log_rotation(soon[k] * goal[k].conjugate()) / kAhead_s - senses.angular_velocity[parent];
-    ask_joint(senses, joints[k], senses.pose[parent].rotation.conjugate() * goal[k], omega,
+    ask_joint(joints[k], senses.pose[parent].rotation.conjugate() * goal[k], omega,
               -physique_.weight_torque(senses, joints[k]), share[k], s(kSwingDamping_s));
   }
 }
@@ -593,7 +597,7 @@ void Standing::ask_upper_body(const Senses& senses) {
     if (arm && !settings_.arms_free[ukemi::index(side)]) turn = Vec3::Zero();
     const Quat home = home_[ukemi::index(parent_of(joint))].rotation.conjugate() *
                       home_[ukemi::index(child_of(joint))].rotation;
-    ask_joint(senses, joint, exp_rotation(turn) * home, Vec3::Zero(), -physique_.weight_torque(senses, joint),
+    ask_joint(joint, exp_rotation(turn) * home, Vec3::Zero(), -physique_.weight_torque(senses, joint),
               arm ? 0.35 : 0.5, s(kDamping_s));
   }
 }

@@ -19,7 +19,7 @@ namespace ukemi {
 struct StandSettings {
   int most_steps = 6;        // of a recovery; 0: the feet stay where they are
   double latency_s = 0.10;   // after the blow nothing but passive body and tone acts
-  double lift_s = 0.21;      // earliest moment that a foot leaves the ground
+  double lift_s = 0.16;      // earliest moment that a foot leaves the ground
   double foot_bias_m = 0.0;  // cost of stepping with the left foot
   double step_scale = 1.0;   // of the way to the capture point
   double swing_s = 0.307;    // of an unhurried step
@@ -55,6 +55,7 @@ class Standing {
     BodySide side = BodySide::left;
     double lift_s = 0.0, span_s = 0.3;
     bool closing = false;
+    bool in_air = false;       // the foot has left the ground
     Vec3 from = Vec3::Zero();  // ankle at the lift
     Quat from_foot = Quat::Identity();
     Vec2 from_sole = Vec2::Zero();
@@ -99,8 +100,8 @@ class Standing {
   void ask_standing_leg(const Senses& senses, const View& view, const Wrench& wrench, BodySide side);
   void ask_swinging_leg(const Senses& senses);
   void ask_upper_body(const Senses& senses);
-  void ask_joint(const Senses& senses, Joint joint, const Quat& goal, const Vec3& velocity,
-                 const Vec3& feed_forward, double stiffness, double damping_s);
+  void ask_joint(Joint joint, const Quat& goal, const Vec3& velocity, const Vec3& feed_forward,
+                 double stiffness, double damping_s);
   double active(double time_s) const;
   void update_slow_state(const Senses& senses, const View& view, double h);
 
