@@ -8,23 +8,20 @@
 #include <cmath>
 
 #include "bake/append.h"
-#include "bake/clip_timing.h"
-#include "bake/exported_clip.h"
-#include "bake/impact.h"
 #include "bake/outputs.h"
 #include "bake/report.h"
-#include "bake/settings.h"
+#include "bake/setting_table.h"
 #include "bake/sheet.h"
-#include "bake/start.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "behave/ground.h"
 #include "body/ground.h"
 #include "clip/frames.h"
-#include "clip/ground_motion.h"
+#include "clip/lead.h"
+#include "clip/recovery.h"
+#include "clip/root_motion.h"
 #include "clip/smooth.h"
 #include "export/additive.h"
-#include "humanoid/rotations.h"
 #include "load/character_path.h"
 #include "load/load.h"
 
@@ -33,7 +30,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMostTransforms = 16'777'216.0;  // of a clip: 9 GB while its keys are reduced
-const double kStartMargin = radians(3.0);  // how far inside its range every joint of the start pose lies
 
 /// Wall-clock time of the stages.
 class Stopwatch {
@@ -52,24 +48,6 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_ = start_;
 };
-
-/// Makes every joint of the start pose lie inside its range, by widening the range where it does not.
-void widen_for_start(BakeOutcome& outcome, Diagnostics& diagnostics) {
-  const PerJoint<SwingTwist> charts = charts_of(outcome.range, rotations_of(outcome.start.segments));
-  for (int i = 0; i < kJointCount; ++i) {
-    if (outcome.body.joints[i].fused) continue;
-    const double outside = excess(outcome.range.joints[i], charts[i]);
-    const double widened = widen_to_hold(outcome.range.joints[i], charts[i], kStartMargin);
-    if (widened <= 0.0) continue;
-    outcome.widened.emplace_back(joint_at(i), widened);
-    if (outside > radians(1.0))
-      diagnostics.warn(
-          std::string(name(joint_at(i))),
-          fmt::format("starts {:.1f} degrees outside its range of motion; the range is widened by {:.1f} "
-                      "degrees for this bake",
-                      degrees(outside), degrees(widened)));
-  }
-}
 
 /// Keeps `hold_s` after the moment everything rests.
 void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_time_s, double hold_s) {
@@ -137,45 +115,53 @@ void add_step_marks(const std::vector<StepTaken>& steps, double end_s, std::vect
   }
 }
 
-/// The clip on the character's own skeleton, where the file places the figure.
-void make_clip(const Character& character, BakeOutcome& outcome) {
-  outcome.ground_lift_max_m = lift_skin_above_floor(
-      outcome.simulation.trajectory.frames, outcome.simulation.trajectory.fps,
-      outermost_skin(character, outcome.humanoid, outcome.start.pose, outcome.start.segments, outcome.body));
-  Trajectory in_file_place = outcome.simulation.trajectory;
-  for (BodyPose& frame : in_file_place.frames)
-    for (Rigid& segment : frame) segment.translation.y() += outcome.start.floor_m;
-  outcome.clip = resample(character, outcome.humanoid, outcome.start.pose, outcome.start.segments,
-                          in_file_place, outcome.resample_error);
-  outcome.clip.name = outcome.reaction;
-  outcome.clip.marks = {{"start", 0.0}, {"impact", 0.0}};
-  const SimulationFigures& figures = outcome.simulation.figures;
-  const double end_s = outcome.clip.duration_s();
+/// What the simulation saw, as far as the clip reaches.
+void add_marks(const SimulationFigures& figures, const ControllerReport& behaviour, Clip& clip) {
+  const double end_s = clip.duration_s();
   if (figures.first_ground_contact_s && *figures.first_ground_contact_s <= end_s)
-    outcome.clip.marks.push_back({"first_ground_contact", *figures.first_ground_contact_s});
-  add_step_marks(outcome.simulation.behaviour.steps, end_s, outcome.clip.marks);
-  const auto& fall = outcome.simulation.behaviour.fall_begins_s;
-  if (fall && *fall <= end_s) outcome.clip.marks.push_back({"fall_begins", *fall});
+    clip.marks.push_back({"first_ground_contact", *figures.first_ground_contact_s});
+  add_step_marks(behaviour.steps, end_s, clip.marks);
+  const auto& fall = behaviour.fall_begins_s;
+  if (fall && *fall <= end_s) clip.marks.push_back({"fall_begins", *fall});
   if (figures.rest_time_s && *figures.rest_time_s <= end_s)
-    outcome.clip.marks.push_back({"rest", *figures.rest_time_s});
+    clip.marks.push_back({"rest", *figures.rest_time_s});
+}
+
+/// From the simulated segments to the clip with all that stands before and behind them.
+void make_timeline(const Character& character, const BakeSettings& settings, Trajectory trajectory,
+                   BakedClip& outcome) {
+  const Prepared& prepared = outcome.prepared;
+  const Actor actor = prepared.actor(character);
+  const double gravity = settings.simulation.gravity;
+  outcome.ground_lift_max_m =
+      lift_skin_above_floor(trajectory.frames, trajectory.fps,
+                            outermost_skin(character, prepared.humanoid, prepared.start.pose,
+                                           prepared.start.segments, prepared.body));
+  outcome.timeline = timeline_of(actor, std::move(trajectory), prepared.reaction, outcome.resample_error);
+  Clip& clip = outcome.timeline.clip;
+  add_marks(outcome.figures, outcome.behaviour, clip);
+  if (settings.extra_bones_play) play_extra_bones(actor, clip);
+  if (settings.smooth_hz) smooth(clip, *settings.smooth_hz);
+  add_lead(actor, prepared.scene, gravity, settings.lead_s, outcome.timeline);
+  if (settings.recover_s)
+    add_recovery(actor, *settings.recover_s, settings.recover_to, gravity, outcome.timeline);
 }
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
 Result<std::vector<std::uint8_t>> bvh_bytes(const Character& character, const BakeSettings& settings,
-                                            const BakeOutcome& outcome, const Clip& clip) {
+                                            const BakedClip& outcome, const Clip& clip) {
   BvhOptions options;
   if (settings.bvh_metres_per_unit) options.metres_per_unit = *settings.bvh_metres_per_unit;
-  const auto text = write_bvh(character, outcome.humanoid, clip, options);
+  const auto text = write_bvh(character, outcome.prepared.humanoid, clip, options);
   if (!text) return text.error();
   return bytes_of(*text);
 }
 
-std::string extras_of(const Character& character, const BakeSettings& settings, const BakeOutcome& outcome) {
-  const SegmentFrames frames =
-      segment_frames(character.skeleton, outcome.humanoid, outcome.start.pose, outcome.start.segments);
-  return animation_extras(character.skeleton, frames, outcome.clip.marks,
-                          {std::string(name(settings.root_motion)), settings.additive});
+std::string extras_of(const Character& character, const BakeSettings& settings, const BakedClip& outcome) {
+  return animation_extras(character.skeleton, frames_of(outcome.prepared.actor(character)),
+                          outcome.timeline.clip.marks,
+                          {std::string(name(settings.ground.root_motion)), settings.additive});
 }
 
 Result<std::vector<std::uint8_t>> gltf_bytes(const fs::path& path, const Character& character,
@@ -207,7 +193,9 @@ Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Chara
 /// Fills `baked.files`.
 Status prepare_files(const Character& character, const BakeSettings& settings, BakedFile& baked) {
   Stopwatch watch;
-  auto exported = exported_clip(character, settings, baked.outcome);
+  auto exported = exported_clip(character, baked.outcome.prepared.humanoid,
+                                baked.outcome.prepared.start.segments[index(Segment::pelvis)],
+                                baked.outcome.timeline.clip, settings.ground);
   if (!exported) return exported.error();
   const Skeleton& skeleton = exported->with_root ? exported->with_root->skeleton : character.skeleton;
   baked.reduced = reduce_keys(skeleton, exported->clip, exported->humanoid.world_from_file, settings.keys);
@@ -252,97 +240,32 @@ Status check_combinations(const BakeSettings& settings) {
 
 }  // namespace
 
-std::string reaction_name(const BakeSettings& settings) {
-  if (!settings.reaction.empty()) return settings.reaction;
-  std::string from = settings.from;
-  std::replace(from.begin(), from.end(), ',', '_');
-  return settings.hit + "_" + from;
-}
-
 Status check_settings(const std::string& character, const BakeSettings& settings) {
   if (const Status status = check_values(settings); !status) return status.error();
   if (const Status status = check_combinations(settings); !status) return status.error();
   return check_outputs(character, settings);
 }
 
-Result<BakeOutcome> prepare_bake(const Character& character, const BakeSettings& settings,
-                                 Diagnostics& diagnostics) {
-  BakeOutcome outcome;
-  outcome.reaction = reaction_name(settings);
-  auto range = settings.range ? Result(*settings.range) : load_range_of_motion(settings.region);
-  if (!range) return range.error();
-  outcome.range = std::move(*range);
-  auto humanoid = map_humanoid(character, settings.humanoid, diagnostics);
-  if (!humanoid) return humanoid.error();
-  outcome.humanoid = std::move(*humanoid);
-  auto start = start_of(character, outcome.humanoid, settings, diagnostics);
-  if (!start) return start.error();
-  outcome.start = std::move(*start);
-  if (settings.recover_s && settings.recover_to == RecoverTo::clip && !outcome.start.motion)
-    return usage_error("--to clip needs a start clip to go back to", "add --clip NAME, or take --to rest");
-  auto body = build_body(character, outcome.humanoid, outcome.start.pose, outcome.start.segments,
-                         BodyOptions{settings.mass_kg.value_or(0.0), settings.sex}, diagnostics);
-  if (!body) return body.error();
-  outcome.body = std::move(*body);
-  widen_for_start(outcome, diagnostics);
-  auto thresholds = load_active_thresholds(settings.active_file);
-  if (!thresholds) return thresholds.error();
-  outcome.thresholds = *thresholds;
-  auto strength = muscle_strength(outcome.body, settings.sex, settings.muscle);
-  if (!strength) return strength.error();
-  outcome.strength = *strength;
-  outcome.behaviour = behaviour_settings(settings);
-  auto scene = scene_of(settings, outcome.start.segments[index(Segment::pelvis)].rotation);
-  if (!scene) return scene.error();
-  outcome.scene = *scene;
-  return outcome;
-}
-
-BehaviourSettings behaviour_settings(const BakeSettings& settings) {
-  BehaviourSettings behaviour;
-  const bool fixed = settings.simulation.fixed_hz > 0.0;
-  behaviour.kind = settings.behaviour.value_or(fixed ? Behaviour::limp : Behaviour::alert);
-  behaviour.most_steps = static_cast<int>(settings.most_steps);
-  behaviour.latency_s = settings.latency_s;
-  behaviour.muscle = settings.muscle;
-  behaviour.seed = static_cast<std::uint64_t>(settings.seed);
-  return behaviour;
-}
-
-SimulationInput simulation_input(const BakeOutcome& prepared, const Scene& scene,
-                                 const SimulationSettings& settings) {
-  return {prepared.body,
-          prepared.range,
-          prepared.thresholds,
-          prepared.strength,
-          prepared.start.state,
-          scene,
-          settings,
-          behaviour_of(prepared.body, prepared.start.state.segments, scene, prepared.behaviour, settings)};
-}
-
-Result<BakeOutcome> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics) {
+Result<BakedClip> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics) {
   Stopwatch watch;
   auto prepared = prepare_bake(character, settings, diagnostics);
   if (!prepared) return prepared.error();
-  BakeOutcome outcome = std::move(*prepared);
+  BakedClip outcome;
+  outcome.prepared = std::move(*prepared);
   outcome.timings_s.load = watch.lap();
-  auto simulation = simulate(simulation_input(outcome, outcome.scene, settings.simulation), diagnostics);
+  auto simulation =
+      simulate(simulation_input(outcome.prepared, outcome.prepared.scene, settings.simulation), diagnostics);
   if (!simulation) return simulation.error();
-  outcome.simulation = std::move(*simulation);
-  if (settings.until_rest)
-    trim_still_tail(outcome.simulation.trajectory, outcome.simulation.figures.rest_time_s, settings.hold_s);
-  if (outcome.behaviour.kind != Behaviour::limp)
-    end_in_start_pose(outcome.start.state.segments, outcome.simulation.behaviour,
-                      outcome.simulation.trajectory);
+  outcome.limits = simulation->limits;
+  outcome.figures = std::move(simulation->figures);
+  outcome.behaviour = std::move(simulation->behaviour);
+  Trajectory& trajectory = simulation->trajectory;
+  if (settings.until_rest) trim_still_tail(trajectory, outcome.figures.rest_time_s, settings.hold_s);
+  if (outcome.prepared.behaviour.kind != Behaviour::limp)
+    end_in_start_pose(outcome.prepared.start.state.segments, outcome.behaviour, trajectory);
   outcome.timings_s.simulate = watch.lap();
-  if (const Status status = check_clip_size(character, settings, outcome.simulation.trajectory); !status)
-    return status.error();
-  make_clip(character, outcome);
-  if (settings.extra_bones_play) play_extra_bones(character, outcome);
-  if (settings.smooth_hz) smooth(outcome.clip, *settings.smooth_hz);
-  add_lead(character, settings, outcome);
-  add_recovery(character, settings, outcome);
+  if (const Status status = check_clip_size(character, settings, trajectory); !status) return status.error();
+  make_timeline(character, settings, std::move(trajectory), outcome);
   outcome.timings_s.resample = watch.lap();
   outcome.timings_s.total = watch.total();
   return outcome;

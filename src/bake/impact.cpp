@@ -7,19 +7,17 @@
 #include <cmath>
 #include <cstdint>
 
-#include "bake/bake.h"
+#include "bake/settings.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/nearest.h"
 #include "base/numbers.h"
-#include "base/parse_segment.h"
 
 namespace ukemi {
 namespace {
 
 constexpr std::int64_t kPresetFormat = 1;
 const std::vector<std::string> kSceneNames = {"ball", "slope", "fall", "push", "impulse", "box"};
-const std::vector<std::string> kDirectionNames = {"front", "back", "left", "right", "above"};
 
 Error preset_error(const std::string& file, const toml::source_region& where, std::string what,
                    std::string fix) {
@@ -150,7 +148,7 @@ Vec3 aim_offset(const Vec3& direction, const BakeSettings& settings) {
 }
 
 Result<ImpactPreset> preset_named(const std::string& text) {
-  const auto presets = load_presets();
+  static const auto presets = load_presets();  // read once
   if (!presets) return presets.error();
   std::vector<std::string> names;
   for (const ImpactPreset& preset : *presets) {
@@ -179,27 +177,6 @@ Result<std::vector<ImpactPreset>> parse_presets(std::string_view toml, const std
   }
 }
 
-Result<Direction> parse_direction(std::string_view text) {
-  constexpr double quarter = 0.5 * kPi;
-  const Direction words[] = {{0, 0}, {kPi, 0}, {quarter, 0}, {-quarter, 0}, {0, quarter}};
-  for (std::size_t i = 0; i < kDirectionNames.size(); ++i)
-    if (text == kDirectionNames[i]) return words[i];
-  const auto comma = text.find(',');
-  const auto azimuth = number_in(text.substr(0, comma));
-  const auto elevation = comma == text.npos ? std::optional(0.0) : number_in(text.substr(comma + 1));
-  const std::string what = fmt::format("'{}' is not a direction", text);
-  if (!azimuth || !elevation) {
-    const std::string near = nearest_word(text, kDirectionNames);
-    return usage_error(what, near.empty()
-                                 ? "give front, back, left, right, above, or AZIMUTH[,ELEVATION] in degrees"
-                                 : fmt::format("did you mean '{}'?", near));
-  }
-  if (std::abs(*azimuth) > 360.0 || std::abs(*elevation) > 90.0)
-    return usage_error(what + ": out of range",
-                       "give an azimuth from -360 to 360 and an elevation from -90 to 90 degrees");
-  return Direction{radians(*azimuth), radians(*elevation)};
-}
-
 Vec3 travel_direction(const Direction& from, const Quat& world_from_pelvis) {
   const Vec3 forward = forward_of(world_from_pelvis);
   const Vec3 left = Vec3::UnitY().cross(forward);
@@ -217,19 +194,12 @@ Result<SceneKind> parse_scene(std::string_view text) {
 std::string_view name(SceneKind scene) { return kSceneNames[static_cast<std::size_t>(scene)]; }
 
 Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelvis) {
-  const auto target = parse_segment(settings.hit);
-  if (!target) return target.error();
-  const auto from = parse_direction(settings.from);
-  if (!from) return from.error();
   const auto preset = preset_named(settings.preset);
   if (!preset) return preset.error();
-  const auto kind = settings.scene ? parse_scene(*settings.scene) : Result<SceneKind>(preset->scene);
-  if (!kind) return kind.error();
-
   Scene scene;
-  scene.kind = *kind;
-  scene.target = *target;
-  scene.direction = travel_direction(*from, world_from_pelvis);
+  scene.kind = settings.scene.value_or(preset->scene);
+  scene.target = settings.hit;
+  scene.direction = travel_direction(settings.from, world_from_pelvis);
   scene.ball_mass_kg = settings.ball_mass_kg.value_or(preset->mass_kg);
   scene.ball_speed_m_s = settings.strength * settings.ball_speed_m_s.value_or(preset->speed_m_s);
   scene.ball_radius_m = settings.ball_radius_m.value_or(preset->radius_m);
@@ -251,7 +221,7 @@ Status check_preset(const std::string& text) {
 
 std::optional<std::string> preset_in_use(const BakeSettings& settings) {
   const bool own_ball = settings.ball_mass_kg && settings.ball_speed_m_s && settings.ball_radius_m;
-  if (own_ball || settings.scene == name(SceneKind::fall)) return std::nullopt;
+  if (own_ball || settings.scene == SceneKind::fall) return std::nullopt;
   return settings.preset;
 }
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "bake/direction.h"
 #include "base/math.h"
 #include "base/result.h"
-#include "base/segments.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {
@@ -31,16 +31,6 @@ Result<std::vector<ImpactPreset>> load_presets();
 /// Errors: input, with line and column (syntax, unknown or missing key, value that is not above 0).
 Result<std::vector<ImpactPreset>> parse_presets(std::string_view toml, const std::string& file);
 
-/// Where a blow comes from, seen from the character, radians.
-struct Direction {
-  double azimuth = 0.0;    // 0: from the front, pi/2: from the character's left
-  double elevation = 0.0;  // positive: from above
-};
-
-/// front, back, left, right, above, or AZIMUTH[,ELEVATION] in degrees (-360 to 360, -90 to 90). Errors:
-/// usage.
-Result<Direction> parse_direction(std::string_view text);
-
 /// Unit vector the blow travels along. Forward is the pelvis's anterior axis made horizontal; for a pelvis
 /// that lies on its front or back, the way its head or feet point.
 Vec3 travel_direction(const Direction& from, const Quat& world_from_pelvis);
@@ -52,8 +42,8 @@ Result<SceneKind> parse_scene(std::string_view text);
 std::string_view name(SceneKind scene);
 
 /// The blow of a bake: the preset's numbers, replaced by what the settings give. A push or an impulse without
-/// numbers of its own carries the ball's momentum. Errors: usage (unknown segment, direction, preset or
-/// scene), input (presets file).
+/// numbers of its own carries the ball's momentum. Errors: usage (unknown preset), input (presets
+/// file).
 Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelvis);
 
 /// The preset whose numbers are used, or nothing where the settings replace them all.

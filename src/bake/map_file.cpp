@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bake/impact.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/parse_segment.h"

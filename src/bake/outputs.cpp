@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "bake/bake.h"
+#include "bake/settings.h"
 #include "base/errors.h"
 
 namespace ukemi {

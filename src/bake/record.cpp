@@ -39,20 +39,20 @@ ReactionFigures figures_from(const Json& json) {
 }  // namespace
 
 ReactionFigures figures_of(const BakedFile& baked) {
-  const BakeOutcome& outcome = baked.outcome;
+  const BakedClip& outcome = baked.outcome;
   constexpr int pelvis = index(Segment::pelvis);
-  const std::vector<BodyPose>& frames = outcome.simulation.trajectory.frames;
+  const std::vector<BodyPose>& frames = outcome.timeline.trajectory.frames;
   const Vec3 moved = frames.back()[pelvis].translation - frames.front()[pelvis].translation;
   ReactionFigures figures;
-  figures.excess_max_deg = outcome.simulation.limits.excess_max_deg;
-  figures.over_1deg = outcome.simulation.limits.over_1deg;
+  figures.excess_max_deg = outcome.limits.excess_max_deg;
+  figures.over_1deg = outcome.limits.over_1deg;
   figures.travel_m = std::hypot(moved.x(), moved.z());
-  figures.momentum_n_s = outcome.simulation.figures.momentum_n_s;
-  figures.rest_time_s = outcome.simulation.figures.rest_time_s;
-  figures.duration_s = outcome.clip.duration_s();
-  figures.joint_separation_max_m = outcome.simulation.figures.joint_separation_max_m;
-  figures.energy_gain_max_j = outcome.simulation.figures.energy_gain_max_j;
-  figures.frames = static_cast<long>(outcome.clip.frames.size());
+  figures.momentum_n_s = outcome.figures.momentum_n_s;
+  figures.rest_time_s = outcome.figures.rest_time_s;
+  figures.duration_s = outcome.timeline.clip.duration_s();
+  figures.joint_separation_max_m = outcome.figures.joint_separation_max_m;
+  figures.energy_gain_max_j = outcome.figures.energy_gain_max_j;
+  figures.frames = static_cast<long>(outcome.timeline.clip.frames.size());
   figures.keys = static_cast<long>(baked.reduced.keys);
   return figures;
 }

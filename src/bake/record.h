@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/bake.h"
+#include "bake/baked.h"
 
 namespace ukemi {
 

@@ -32,11 +32,11 @@ Json or_null(const std::optional<T>& value) {
 Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Json numbers(const Quat& q) { return {q.x(), q.y(), q.z(), q.w()}; }
 
-Json settings_json(const BakeSettings& settings, const BakeOutcome& outcome) {
+Json settings_json(const BakeSettings& settings, const BakedClip& outcome) {
   const SimulationSettings& simulation = settings.simulation;
   Json json;
   json["limits"] = name(simulation.limits);
-  json["region"] = outcome.range.name;
+  json["region"] = outcome.prepared.range.name;
   json["active"] = name(simulation.active);
   json["rate"] = rate_name(simulation.fixed_hz);
   json["duration_s"] = simulation.duration_s;
@@ -48,16 +48,16 @@ Json settings_json(const BakeSettings& settings, const BakeOutcome& outcome) {
   json["damping_1_s"] = damping_of(simulation);
   json["tone"] = tone_of(simulation);
   json["tone_fade_s"] = simulation.tone_fade_s;
-  json["pose"] = outcome.start.from_clip ? Json(nullptr) : Json(outcome.start.name);
-  json["clip"] = outcome.start.from_clip ? Json(outcome.start.name) : Json(nullptr);
-  json["at_s"] = outcome.start.from_clip ? Json(outcome.start.at_s) : Json(nullptr);
+  json["pose"] = outcome.prepared.start.from_clip ? Json(nullptr) : Json(outcome.prepared.start.name);
+  json["clip"] = outcome.prepared.start.from_clip ? Json(outcome.prepared.start.name) : Json(nullptr);
+  json["at_s"] = outcome.prepared.start.from_clip ? Json(outcome.prepared.start.at_s) : Json(nullptr);
   json["until_rest"] = settings.until_rest;
   json["hold_s"] = settings.until_rest ? Json(settings.hold_s) : Json(nullptr);
-  json["lead_s"] = outcome.impact_s;
+  json["lead_s"] = outcome.timeline.impact_s;
   json["recover_s"] = or_null(settings.recover_s);
   json["recover_to"] =
       settings.recover_s ? Json(settings.recover_to == RecoverTo::clip ? "clip" : "rest") : Json(nullptr);
-  json["align"] = settings.align;
+  json["align"] = settings.ground.align;
   json["extra_bones"] = settings.extra_bones_play ? "clip" : "hold";
   json["smooth_hz"] = or_null(settings.smooth_hz);
   json["keys"] = settings.keys.enabled ? "reduced" : "all";
@@ -65,9 +65,8 @@ Json settings_json(const BakeSettings& settings, const BakeOutcome& outcome) {
   return json;
 }
 
-Json frames_json(const Character& character, const BakeOutcome& outcome) {
-  const SegmentFrames frames =
-      segment_frames(character.skeleton, outcome.humanoid, outcome.start.pose, outcome.start.segments);
+Json frames_json(const Character& character, const BakedClip& outcome) {
+  const SegmentFrames frames = frames_of(outcome.prepared.actor(character));
   Json json = Json::object();
   for (int i = 0; i < kSegmentCount; ++i) {
     Json& segment = json[std::string(name(segment_at(i)))];
@@ -78,13 +77,13 @@ Json frames_json(const Character& character, const BakeOutcome& outcome) {
   return json;
 }
 
-Json humanoid_json(const Character& character, const BakeOutcome& outcome) {
+Json humanoid_json(const Character& character, const BakedClip& outcome) {
   Json json;
-  json["height_m"] = outcome.humanoid.height_m;
-  json["mass_kg"] = outcome.body.mass_kg;
+  json["height_m"] = outcome.prepared.humanoid.height_m;
+  json["mass_kg"] = outcome.prepared.body.mass_kg;
   Json map = Json::object();
   for (int i = 0; i < kSegmentCount; ++i) {
-    const int node = outcome.humanoid.segments[i].node();
+    const int node = outcome.prepared.humanoid.segments[i].node();
     map[std::string(name(segment_at(i)))] = node < 0 ? Json(nullptr) : Json(character.skeleton.label(node));
   }
   json["map"] = std::move(map);
@@ -93,30 +92,34 @@ Json humanoid_json(const Character& character, const BakeOutcome& outcome) {
 }
 
 /// Distance of the joints of the clip's impact frame from the pose it starts from.
-double position_jump(const Character& character, const BakeOutcome& outcome) {
-  const auto impact = static_cast<std::size_t>(std::lround(outcome.impact_s * outcome.clip.fps));
-  const BodyPose first = segments_of(character.skeleton, outcome.humanoid, outcome.clip.frames[impact]);
+double position_jump(const Character& character, const BakedClip& outcome) {
+  const auto impact =
+      static_cast<std::size_t>(std::lround(outcome.timeline.impact_s * outcome.timeline.clip.fps));
+  const BodyPose first =
+      segments_of(character.skeleton, outcome.prepared.humanoid, outcome.timeline.clip.frames[impact]);
   double largest = 0.0;
   for (int i = 0; i < kSegmentCount; ++i)
-    largest = std::max(largest, (first[i].translation - outcome.start.segments[i].translation).norm());
+    largest =
+        std::max(largest, (first[i].translation - outcome.prepared.start.segments[i].translation).norm());
   return largest;
 }
 
-Json impact_json(const Character& character, const BakeSettings& settings, const BakeOutcome& outcome) {
-  const Scene& scene = outcome.scene;
+Json impact_json(const Character& character, const BakeSettings& settings, const BakedClip& outcome) {
+  const Scene& scene = outcome.prepared.scene;
   Json json;
   json["segment"] = name(scene.target);
   json["preset"] = or_null(preset_in_use(settings));
-  json["time_s"] = outcome.impact_s;
-  json["momentum_n_s"] = outcome.simulation.figures.momentum_n_s;
-  const std::optional<double>& contact_s = outcome.simulation.figures.first_ground_contact_s;
-  json["first_ground_contact_s"] = contact_s ? Json(outcome.impact_s + *contact_s) : Json(nullptr);
-  const bool from_clip = outcome.start.from_clip;
+  json["time_s"] = outcome.timeline.impact_s;
+  json["momentum_n_s"] = outcome.figures.momentum_n_s;
+  const std::optional<double>& contact_s = outcome.figures.first_ground_contact_s;
+  json["first_ground_contact_s"] = contact_s ? Json(outcome.timeline.impact_s + *contact_s) : Json(nullptr);
+  const bool from_clip = outcome.prepared.start.from_clip;
   json["position_jump_m"] = from_clip ? Json(position_jump(character, outcome)) : Json(nullptr);
   json["velocity_jump_m_s"] =
-      from_clip ? Json(velocity_jump(character.skeleton, outcome.humanoid, outcome.start)) : Json(nullptr);
+      from_clip ? Json(velocity_jump(character.skeleton, outcome.prepared.humanoid, outcome.prepared.start))
+                : Json(nullptr);
   json["scene"] = name(scene.kind);
-  json["from"] = settings.from;
+  json["from"] = settings.from.text;
   json["direction"] = numbers(scene.direction);
   const bool fall = scene.kind == SceneKind::fall;
   const bool ball =
@@ -130,7 +133,7 @@ Json impact_json(const Character& character, const BakeSettings& settings, const
   json["tip_speed_m_s"] = fall ? Json(scene.tip_speed_m_s) : Json(nullptr);
   json["push_force_n"] = push ? Json(scene.push_force_n) : Json(nullptr);
   json["push_duration_s"] = push ? Json(scene.push_duration_s) : Json(nullptr);
-  json["floor_height_m"] = outcome.start.floor_m;
+  json["floor_height_m"] = outcome.prepared.start.floor_m;
   return json;
 }
 
@@ -149,9 +152,9 @@ Json steps_json(const std::vector<StepTaken>& steps) {
   return json;
 }
 
-Json response_json(const BakeOutcome& outcome) {
+Json response_json(const BakedClip& outcome) {
   const Response response = response_of(outcome);
-  const SimulationFigures& figures = outcome.simulation.figures;
+  const SimulationFigures& figures = outcome.figures;
   const bool muscles = response.behaviour != Behaviour::limp;
   Json json;
   json["behaviour"] = name(response.behaviour);
@@ -173,8 +176,8 @@ Json response_json(const BakeOutcome& outcome) {
   return json;
 }
 
-Json limits_json(const BakeOutcome& outcome) {
-  const LimitFigures& figures = outcome.simulation.limits;
+Json limits_json(const BakedClip& outcome) {
+  const LimitFigures& figures = outcome.limits;
   Json json;
   json["samples"] = figures.samples;
   json["over_1deg"] = figures.over_1deg;
@@ -185,7 +188,7 @@ Json limits_json(const BakeOutcome& outcome) {
       figures.projected ? Json(figures.excess_projected_max_deg) : Json(nullptr);
   json["projected"] = figures.projected;
   json["widened_deg"] = Json::object();
-  for (const auto& [joint, angle] : outcome.widened)
+  for (const auto& [joint, angle] : outcome.prepared.widened)
     json["widened_deg"][std::string(name(joint))] = degrees(angle);
   return json;
 }
@@ -228,30 +231,30 @@ Json filtered_jerk_json(const Clip& clip) {
   return largest_jerk(filtered).deg_s3;
 }
 
-Json clip_json(const Skeleton& skeleton, const BakeSettings& settings, const BakeOutcome& outcome,
+Json clip_json(const Skeleton& skeleton, const BakeSettings& settings, const BakedClip& outcome,
                const ReducedClip& reduced) {
   Json json;
-  json["frames"] = outcome.clip.frames.size();
+  json["frames"] = outcome.timeline.clip.frames.size();
   json["resample_position_max_m"] = outcome.resample_error.position_single_bones_max_m;
   json["ground_lift_max_m"] = outcome.ground_lift_max_m;
   json["resample_position_shared_bends_max_m"] = outcome.resample_error.position_max_m;
   json["resample_rotation_max_deg"] = outcome.resample_error.rotation_max_deg;
   json["keys"] = reduced.keys;
   json["keys_error_max_m"] = reduced.error_m;
-  const JerkPeak jerk = largest_jerk(outcome.clip);
+  const JerkPeak jerk = largest_jerk(outcome.timeline.clip);
   json["jerk_max_deg_s3"] = jerk.deg_s3;
   json["outputs"] = Json::array();
   for (const auto& output : settings.outputs) json["outputs"].push_back(output.string());
-  json["name"] = outcome.clip.name;
-  json["duration_s"] = outcome.clip.duration_s();
-  json["marks_s"] = marks_json(outcome.clip);
-  json["root_motion"] = name(settings.root_motion);
+  json["name"] = outcome.timeline.clip.name;
+  json["duration_s"] = outcome.timeline.clip.duration_s();
+  json["marks_s"] = marks_json(outcome.timeline.clip);
+  json["root_motion"] = name(settings.ground.root_motion);
   json["additive"] = settings.additive;
   json["root_curve_m"] = nullptr;
   json["jerk_real_motion_p999_deg_s3"] = kRealJerk_deg_s3;
   json["jerk_max_node"] = jerk.node < 0 ? Json(nullptr) : Json(skeleton.label(jerk.node));
   json["jerk_max_time_s"] = jerk.node < 0 ? Json(nullptr) : Json(jerk.time_s);
-  json["jerk_below_12hz_max_deg_s3"] = filtered_jerk_json(outcome.clip);
+  json["jerk_below_12hz_max_deg_s3"] = filtered_jerk_json(outcome.timeline.clip);
   return json;
 }
 
@@ -270,39 +273,27 @@ Json timings_json(const BakeTimings& timings, double clip_duration_s) {
 }  // namespace
 
 std::string report_json(const std::string& character, const Character& loaded, const BakeSettings& settings,
-                        const BakeOutcome& outcome, const ReducedClip& reduced,
-                        const Diagnostics& diagnostics, const std::vector<Vec3>& root_curve) {
+                        const BakedClip& outcome, const ReducedClip& reduced, const Diagnostics& diagnostics,
+                        const std::vector<Vec3>& root_curve) {
   Json json;
   json["format"] = 1;
   json["generator"] = generator();
   json["character"] = character;
-  json["reaction"] = outcome.reaction;
+  json["reaction"] = outcome.prepared.reaction;
   json["settings"] = settings_json(settings, outcome);
   json["humanoid"] = humanoid_json(loaded, outcome);
   json["impact"] = impact_json(loaded, settings, outcome);
   json["response"] = response_json(outcome);
   json["limits"] = limits_json(outcome);
-  json["simulation"] = simulation_json(outcome.simulation.figures);
+  json["simulation"] = simulation_json(outcome.figures);
   json["clip"] = clip_json(loaded.skeleton, settings, outcome, reduced);
   if (!root_curve.empty()) json["clip"]["root_curve_m"] = root_curve_json(root_curve);
-  json["timings_s"] = timings_json(outcome.timings_s, outcome.clip.duration_s());
+  json["timings_s"] = timings_json(outcome.timings_s, outcome.timeline.clip.duration_s());
   json["warnings"] = Json::array();
   for (const Warning& warning : diagnostics.warnings())
     json["warnings"].push_back(warning.subject.empty() ? warning.what
                                                        : warning.subject + ": " + warning.what);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::string_view name(RootMotion motion) {
-  switch (motion) {
-    case RootMotion::root:
-      return "root";
-    case RootMotion::in_place:
-      return "in-place";
-    case RootMotion::hips:
-      break;
-  }
-  return "hips";
 }
 
 std::string_view name(Limits limits) {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "bake/bake.h"
+#include "bake/baked.h"
 
 namespace ukemi {
 
@@ -26,11 +26,9 @@ namespace ukemi {
 /// the motion on the hips.
 /// 6. timings_s.realtime_factor is the clip's length over the total.
 std::string report_json(const std::string& character, const Character& loaded, const BakeSettings& settings,
-                        const BakeOutcome& outcome, const ReducedClip& reduced,
-                        const Diagnostics& diagnostics, const std::vector<Vec3>& root_curve = {});
+                        const BakedClip& outcome, const ReducedClip& reduced, const Diagnostics& diagnostics,
+                        const std::vector<Vec3>& root_curve = {});
 
-/// "hips", "root", "in-place".
-std::string_view name(RootMotion motion);
 std::string_view name(Limits limits);
 std::string_view name(Active active);
 /// "adaptive" or "fixed:480".

@@ -105,35 +105,36 @@ double foot_slide(const ArticulatedBody& body, const Trajectory& trajectory, dou
   return most;
 }
 
-Response response_of(const BakeOutcome& outcome) {
-  const SimulationFigures& figures = outcome.simulation.figures;
-  const ControllerReport& report = outcome.simulation.behaviour;
-  const Trajectory& trajectory = outcome.simulation.trajectory;
-  const auto first = static_cast<std::size_t>(std::lround(outcome.impact_s * trajectory.fps));
+Response response_of(const BakedClip& outcome) {
+  const SimulationFigures& figures = outcome.figures;
+  const ControllerReport& report = outcome.behaviour;
+  const Trajectory& trajectory = outcome.timeline.trajectory;
+  const auto first = static_cast<std::size_t>(std::lround(outcome.timeline.impact_s * trajectory.fps));
   const auto touched = [&](Segment s) {
     auto touch = figures.touch_down[index(s)];
-    if (touch) touch->time_s += outcome.impact_s;
+    if (touch) touch->time_s += outcome.timeline.impact_s;
     return touch;
   };
   Response response;
-  response.behaviour = outcome.behaviour.kind;
+  response.behaviour = outcome.prepared.behaviour.kind;
   response.steps = report.steps;
   for (StepTaken& step : response.steps) {
-    step.lift_s += outcome.impact_s;
-    if (step.contact_s) *step.contact_s += outcome.impact_s;
+    step.lift_s += outcome.timeline.impact_s;
+    if (step.contact_s) *step.contact_s += outcome.timeline.impact_s;
   }
-  if (report.fall_begins_s) response.fall_begins_s = outcome.impact_s + *report.fall_begins_s;
+  if (report.fall_begins_s) response.fall_begins_s = outcome.timeline.impact_s + *report.fall_begins_s;
   response.head = touched(Segment::head);
   response.pelvis = touched(Segment::pelvis);
   response.hand = earlier(touched(Segment::hand_l), touched(Segment::hand_r));
   const BodyPose& start = trajectory.frames[std::min(first, trajectory.frames.size() - 1)];
   const BodyPose& end = trajectory.frames.back();
-  response.end_pose = final_pose_of(outcome.start.state.segments, end);
+  response.end_pose = final_pose_of(outcome.prepared.start.state.segments, end);
   response.outcome = response.end_pose != FinalPose::standing || response.fall_begins_s ? Outcome::fell
                      : response.steps.empty()                                           ? Outcome::stood
                                                                                         : Outcome::stepped;
-  response.foot_slide_max_m = foot_slide(
-      outcome.body, trajectory, response.fall_begins_s.value_or(std::numeric_limits<double>::infinity()));
+  response.foot_slide_max_m =
+      foot_slide(outcome.prepared.body, trajectory,
+                 response.fall_begins_s.value_or(std::numeric_limits<double>::infinity()));
   response.travel_m = end[0].translation - start[0].translation;
   response.turn_deg =
       degrees(wrapped(yaw_of(end[0].rotation * Vec3::UnitX()) - yaw_of(start[0].rotation * Vec3::UnitX())));

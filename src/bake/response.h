@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/bake.h"
+#include "bake/baked.h"
 
 namespace ukemi {
 
@@ -35,6 +35,6 @@ FinalPose final_pose_of(const BodyPose& start, const BodyPose& end);
 /// ms after it touched, up to `until_s`, m.
 double foot_slide(const ArticulatedBody& body, const Trajectory& trajectory, double until_s);
 
-Response response_of(const BakeOutcome& outcome);
+Response response_of(const BakedClip& outcome);
 
 }  // namespace ukemi

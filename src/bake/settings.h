@@ -1,59 +1,84 @@
-// Every setting of a bake, declared once. The command line, recipes, the printed reference and the digest of
-// a reaction's inputs all read this table, so that a setting has one name, one check and one line of help.
+// What one bake is asked for, as values.
 #pragma once
 
-#include <functional>
+#include <filesystem>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "base/numbers.h"
-#include "base/result.h"
+#include "bake/direction.h"
+#include "base/segments.h"
+#include "behave/behaviour.h"
+#include "body/body.h"
+#include "clip/recovery.h"
+#include "clip/root_motion.h"
+#include "export/export.h"
+#include "humanoid/humanoid.h"
+#include "render/render.h"
+#include "restrict/range_of_motion.h"
+#include "simulate/simulate.h"
 
 namespace ukemi {
 
-struct BakeSettings;
-struct HumanoidOptions;
-
-/// One setting of a `Target`.
-template <typename Target>
-struct SettingOf {
-  enum class Kind {
-    number,
-    text,
-    choice,  // one of `words`
-    on_off,  // "true" or "false"
-    list     // any number of texts
-  };
-  Kind kind = Kind::text;
-  std::string_view group;          // heading in the help: hit, body, start, method, clip, out
-  std::string_view name;           // "ball-mass": --ball-mass CLI, ball-mass = in a recipe
-  std::string value;               // placeholder: "KG", "SEGMENT", "y|z"
-  std::string help;                // what it does
-  std::string opposite;            // on_off: what false does
-  std::string unset;               // default where `get` gives none: "found out"; may be empty
-  Range range;                     // number
-  std::vector<std::string> words;  // choice
-  /// Takes what the user wrote (a list: one entry at a time, added). Errors: usage; `what` does not name the
-  /// setting.
-  std::function<Status(Target&, const std::string&)> set;
-  /// The value in force as `set` takes it, shortest form; nothing where the program finds it out.
-  std::function<std::vector<std::string>(const Target&)> get;
+/// Everything that one bake may be told. Defaults are the program's.
+struct BakeSettings {
+  // hit
+  Segment hit = Segment::chest;
+  Direction from;
+  std::string preset = "medicine-ball";  // assets/impacts/presets.toml
+  std::optional<double> ball_mass_kg, ball_speed_m_s, ball_radius_m;
+  std::optional<SceneKind> scene;           // the preset's unless given
+  double strength = 1.0;                    // of the blow: times its momentum
+  double aim_up_m = 0.0, aim_left_m = 0.0;  // ball, box: from the segment's centre, as the blow sees it
+  double fall_height_m = 0.0;               // fall: so high above the floor
+  double tip_speed_m_s = 0.8;               // fall: of the centre of mass
+  double slope_deg = 20.0;                  // slope: of the ramp
+  // body
+  std::optional<double> mass_kg;
+  Sex sex = Sex::male;
+  HumanoidOptions humanoid;
+  // start
+  std::optional<std::string> pose;  // rest, stand, guard
+  std::optional<std::string> clip;  // name of a clip of the file
+  std::optional<double> at_s;
+  // behaviour
+  std::optional<Behaviour> behaviour;  // unless given: alert, limp with fixed steps
+  double most_steps = 6;               // of a recovery
+  double muscle = 1.0;                 // strength, of a healthy adult's
+  std::optional<double> latency_s;     // unless given: the behaviour's
+  double seed = 0;                     // varies stance, latency, arms and steps; 0: the mean of all
+  // method
+  std::string region = "human";        // name or file, see load_range_of_motion
+  std::optional<RangeOfMotion> range;  // in place of the region's
+  SimulationSettings simulation;
+  std::string active_file;  // thresholds of the active restriction; empty: assets/limits/active.toml
+  // clip
+  bool until_rest = true;  // trim the still tail
+  double hold_s = 0.25;    // kept of it
+  double lead_s = 0.0;     // of the start, before the impact
+  std::optional<double> recover_s;
+  RecoverTo recover_to = RecoverTo::rest;
+  GroundPlacement ground;
+  bool additive = false;            // difference from the first frame
+  bool extra_bones_play = false;    // bones of no segment play the start clip on
+  std::optional<double> smooth_hz;  // cut-off of a zero-phase filter
+  KeyReduction keys;
+  // out
+  bool append = false;   // to the clips that an output holds
+  std::string reaction;  // name of the clip; empty: SEGMENT_FROM
+  std::vector<std::filesystem::path> outputs;
+  bool clip_only = false;  // glTF without the mesh
+  std::optional<double> bvh_metres_per_unit;
+  std::filesystem::path sheet;         // empty: none
+  std::filesystem::path preview;       // moving; empty: none
+  ThemeKind theme = ThemeKind::light;  // of the pictures
+  std::filesystem::path report;        // empty: none
 };
 
-using Setting = SettingOf<BakeSettings>;
-using HumanoidSetting = SettingOf<HumanoidOptions>;
+/// The name a bake's clip gets: that of the settings, else SEGMENT_FROM.
+std::string reaction_name(const BakeSettings& settings);
 
-/// How a file's skeleton is read, the same for every command that reads one: map unit up height.
-const std::vector<HumanoidSetting>& humanoid_settings();
-
-/// All settings of a bake, in the order of the help; groups are contiguous.
-const std::vector<Setting>& bake_settings();
-
-/// The setting of that name. Errors: usage, with the nearest name.
-Result<const Setting*> find_setting(std::string_view name);
-
-/// Whether every value in force is legal, however it came there. Errors: usage.
-Status check_values(const BakeSettings& settings);
+/// The behaviour in force.
+BehaviourSettings behaviour_settings(const BakeSettings& settings);
 
 }  // namespace ukemi

@@ -49,12 +49,13 @@ std::string blow_text(const BakeSettings& settings, const Scene& scene) {
   return fmt::format("{}: {} kg at {} m/s", what, scene.ball_mass_kg, scene.ball_speed_m_s);
 }
 
-std::vector<Fact> facts_of(const BakeSettings& settings, const BakeOutcome& outcome) {
-  const LimitFigures& limits = outcome.simulation.limits;
-  const SimulationFigures& figures = outcome.simulation.figures;
+std::vector<Fact> facts_of(const BakeSettings& settings, const BakedClip& outcome) {
+  const LimitFigures& limits = outcome.limits;
+  const SimulationFigures& figures = outcome.figures;
   std::vector<Fact> facts = {
-      {"blow", blow_text(settings, outcome.scene)},
-      {"figure", fmt::format("{:.2f} m, {:.1f} kg", outcome.humanoid.height_m, outcome.body.mass_kg)},
+      {"blow", blow_text(settings, outcome.prepared.scene)},
+      {"figure",
+       fmt::format("{:.2f} m, {:.1f} kg", outcome.prepared.humanoid.height_m, outcome.prepared.body.mass_kg)},
       {"over 1° outside the range", fmt::format("{} of {} samples", limits.over_1deg, limits.samples)},
       {"largest excess", fmt::format("{:.2f}°", limits.excess_max_deg)}};
   if (figures.first_ground_contact_s)
@@ -175,29 +176,29 @@ Shot shot_of(const Loaded& loaded, const RangeOfMotion* range) {
   return shot;
 }
 
-Clip clip_on_floor(const Character& character, const BakeOutcome& outcome) {
-  Clip clip = outcome.clip;
-  put_on_floor(character, outcome.humanoid, outcome.start.floor_m, clip);
+Clip clip_on_floor(const Character& character, const BakedClip& outcome) {
+  Clip clip = outcome.timeline.clip;
+  put_on_floor(character, outcome.prepared.humanoid, outcome.prepared.start.floor_m, clip);
   return clip;
 }
 
 /// Contract: all four outlive the shot.
-Shot shot_of(const Character& character, const BakeSettings& settings, const BakeOutcome& outcome,
+Shot shot_of(const Character& character, const BakeSettings& settings, const BakedClip& outcome,
              const Clip& clip) {
-  const Trajectory& trajectory = outcome.simulation.trajectory;
+  const Trajectory& trajectory = outcome.timeline.trajectory;
   Shot shot;
   shot.character = &character;
-  shot.humanoid = &outcome.humanoid;
+  shot.humanoid = &outcome.prepared.humanoid;
   shot.clip = &clip;
-  shot.body = &outcome.body;
+  shot.body = &outcome.prepared.body;
   shot.segments = &trajectory.frames;
   shot.props = &trajectory.props;
   shot.impact_point = trajectory.impact_point;
   shot.impact_direction = trajectory.impact_direction;
-  shot.title =
-      outcome.scene.kind == SceneKind::fall
-          ? fmt::format("{}: falls away from {}", character.name, settings.from)
-          : fmt::format("{}: {} hit from {}", character.name, name(outcome.scene.target), settings.from);
+  shot.title = outcome.prepared.scene.kind == SceneKind::fall
+                   ? fmt::format("{}: falls away from {}", character.name, settings.from.text)
+                   : fmt::format("{}: {} hit from {}", character.name, name(outcome.prepared.scene.target),
+                                 settings.from.text);
   shot.facts = facts_of(settings, outcome);
   return shot;
 }
@@ -205,7 +206,7 @@ Shot shot_of(const Character& character, const BakeSettings& settings, const Bak
 }  // namespace
 
 Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const BakeSettings& settings,
-                                             const BakeOutcome& outcome) {
+                                             const BakedClip& outcome) {
   const Clip clip = clip_on_floor(character, outcome);
   SheetOptions options;
   options.theme = settings.theme;
@@ -216,8 +217,7 @@ Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const B
 }
 
 Result<std::vector<std::uint8_t>> bake_thumbnail(const Character& character, const BakeSettings& settings,
-                                                 const BakeOutcome& outcome,
-                                                 const ThumbnailOptions& options) {
+                                                 const BakedClip& outcome, const ThumbnailOptions& options) {
   const Clip clip = clip_on_floor(character, outcome);
   const auto picture = render_thumbnail(shot_of(character, settings, outcome, clip), options);
   if (!picture) return picture.error();
@@ -225,7 +225,7 @@ Result<std::vector<std::uint8_t>> bake_thumbnail(const Character& character, con
 }
 
 Result<std::vector<std::uint8_t>> bake_preview(const Character& character, const BakeSettings& settings,
-                                               const BakeOutcome& outcome) {
+                                               const BakedClip& outcome) {
   const Clip clip = clip_on_floor(character, outcome);
   MovingOptions options;
   options.theme = settings.theme;

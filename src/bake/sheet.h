@@ -9,24 +9,24 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/bake.h"
+#include "bake/baked.h"
 #include "base/result.h"
 
 namespace ukemi {
 
 /// The contact sheet of a bake as a PNG.
 Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const BakeSettings& settings,
-                                             const BakeOutcome& outcome);
+                                             const BakedClip& outcome);
 
 /// The bake in one small picture as a WebP of about 4 kB: the figure half-way through its motion, see-through
 /// where it starts, and the blow.
 Result<std::vector<std::uint8_t>> bake_thumbnail(const Character& character, const BakeSettings& settings,
-                                                 const BakeOutcome& outcome,
+                                                 const BakedClip& outcome,
                                                  const ThumbnailOptions& options = {});
 
 /// The bake as an animated WebP, 640 x 360 at 30 frames a second.
 Result<std::vector<std::uint8_t>> bake_preview(const Character& character, const BakeSettings& settings,
-                                               const BakeOutcome& outcome);
+                                               const BakedClip& outcome);
 
 struct RenderSettings {
   std::optional<std::string> clip;  // default: the last of the file; the rest pose of a file without clips

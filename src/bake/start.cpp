@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/bake.h"
 #include "bake/motion.h"
+#include "bake/settings.h"
 #include "base/errors.h"
 #include "base/nearest.h"
 #include "clip/ground_motion.h"

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "bake/bake.h"
 #include "bake/report.h"
 #include "base/digest.h"
 #include "base/files.h"

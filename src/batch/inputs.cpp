@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bake/settings.h"
+#include "bake/setting_table.h"
 #include "base/digest.h"
 #include "base/files.h"
 #include "base/uri.h"

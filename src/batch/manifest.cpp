@@ -1,4 +1,5 @@
 #include "batch/manifest.h"
+#include "bake/impact.h"
 #include "base/version.h"
 
 #include <fmt/format.h>
@@ -31,7 +32,7 @@ Json path_or_null(const fs::path& path, bool made) {
 Json varied_json(const Reaction& reaction) {
   if (!reaction.varies) return nullptr;
   const BakeSettings& settings = reaction.settings;
-  return {{"from", settings.from},
+  return {{"from", settings.from.text},
           {"strength", settings.strength},
           {"aim_up_m", settings.aim_up_m},
           {"aim_left_m", settings.aim_left_m}};
@@ -40,10 +41,10 @@ Json varied_json(const Reaction& reaction) {
 Json settings_json(const Reaction& reaction) {
   const BakeSettings& settings = reaction.settings;
   Json json;
-  json["hit"] = settings.hit;
+  json["hit"] = name(settings.hit);
   json["from"] = text_or_null(written(reaction, "from"));
   json["preset"] = settings.preset;
-  json["scene"] = text_or_null(settings.scene);
+  json["scene"] = settings.scene ? Json(name(*settings.scene)) : Json(nullptr);
   json["pose"] = text_or_null(settings.pose);
   json["clip"] = text_or_null(settings.clip);
   json["at_s"] = number_or_null(settings.at_s);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/impact.h"
-#include "bake/settings.h"
+#include "bake/direction.h"
+#include "bake/setting_table.h"
 #include "base/digest.h"
 #include "base/errors.h"
 #include "base/file_names.h"
@@ -89,10 +89,10 @@ void vary(const Jitter& jitter, Reaction& reaction) {
   const double up = within(jitter.point_m), left = within(jitter.point_m);
   const double stronger = within(0.01 * jitter.strength_percent);
   if (jitter.direction_deg > 0.0) {
-    const Direction from = *parse_direction(settings.from);
+    const Direction& from = settings.from;
     const double azimuth = std::remainder(degrees(from.azimuth) + turn, 360.0);
     const double elevation = std::clamp(degrees(from.elevation) + lift, -90.0, 90.0);
-    settings.from = fmt::format("{:.2f},{:.2f}", azimuth, elevation);
+    settings.from = *parse_direction(fmt::format("{:.2f},{:.2f}", azimuth, elevation));
   }
   if (jitter.point_m > 0.0) {
     settings.aim_up_m += rounded(up, 1e-4);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bake/settings.h"
+#include "bake/setting_table.h"
 #include "batch/recipe.h"
 
 namespace ukemi {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "base/result.h"
-#include "batch/batch.h"
+#include "batch/plan.h"
 
 namespace ukemi {
 

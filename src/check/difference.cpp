@@ -7,7 +7,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "bake/bake.h"
 #include "base/animation.h"
 #include "base/errors.h"
 #include "base/native_rate.h"

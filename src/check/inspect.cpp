@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bake/bake.h"
 #include "base/animation.h"
 #include "base/native_rate.h"
 #include "clip/names.h"

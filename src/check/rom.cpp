@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "bake/bake.h"
 #include "bake/report.h"
 #include "base/errors.h"
 #include "base/nearest.h"

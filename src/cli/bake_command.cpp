@@ -47,14 +47,15 @@ Status check(const BakeRequest& request) {
 }
 
 std::string summary(const BakeRequest& request, const BakedFile& baked) {
-  const BakeOutcome& outcome = baked.outcome;
-  const LimitFigures& limits = outcome.simulation.limits;
-  const SimulationFigures& figures = outcome.simulation.figures;
-  std::string text = fmt::format("{} hit from {}: {:.1f} N s on {:.2f} m, {:.1f} kg\n",
-                                 name(outcome.scene.target), request.settings.from, figures.momentum_n_s,
-                                 outcome.humanoid.height_m, outcome.body.mass_kg);
-  text += fmt::format("{:.2f} s, {} frames at {} fps; {}\n", outcome.clip.duration_s(),
-                      outcome.clip.frames.size(), outcome.clip.fps,
+  const BakedClip& outcome = baked.outcome;
+  const LimitFigures& limits = outcome.limits;
+  const SimulationFigures& figures = outcome.figures;
+  std::string text =
+      fmt::format("{} hit from {}: {:.1f} N s on {:.2f} m, {:.1f} kg\n", name(outcome.prepared.scene.target),
+                  request.settings.from.text, figures.momentum_n_s, outcome.prepared.humanoid.height_m,
+                  outcome.prepared.body.mass_kg);
+  text += fmt::format("{:.2f} s, {} frames at {} fps; {}\n", outcome.timeline.clip.duration_s(),
+                      outcome.timeline.clip.frames.size(), outcome.timeline.clip.fps,
                       figures.rest_time_s ? fmt::format("at rest after {:.2f} s", *figures.rest_time_s)
                                           : std::string("not at rest"));
   text += fmt::format("range of motion: {} of {} samples over 1 degree outside, at most {:.2f} degrees{}\n",

@@ -154,8 +154,8 @@ Result<std::string> dry_run_text(const BatchPlan& plan, const BatchSettings& set
     const Reaction& reaction = plan.reactions[i];
     if (plan.planned[i].plan == Plan::elsewhere) continue;
     text += fmt::format("{:<9} {}/{}: {} from {}, {}\n", plan_word(plan.planned[i].plan),
-                        plan.recipe.characters[reaction.character].name, reaction.name, reaction.settings.hit,
-                        reaction.settings.from, reaction.settings.preset);
+                        plan.recipe.characters[reaction.character].name, reaction.name,
+                        name(reaction.settings.hit), reaction.settings.from.text, reaction.settings.preset);
   }
   const auto seconds = estimate_seconds(plan, settings);
   if (!seconds) return seconds.error();

@@ -5,7 +5,6 @@
 #include <array>
 #include <string_view>
 
-#include "bake/bake.h"
 #include "base/nearest.h"
 #include "base/version.h"
 #include "cli/console.h"

@@ -1,7 +1,7 @@
 // The settings of a bake as options of a command.
 #pragma once
 
-#include "bake/bake.h"
+#include "bake/settings.h"
 #include "cli/options.h"
 #include "humanoid/humanoid.h"
 

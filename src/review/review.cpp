@@ -11,7 +11,6 @@
 #include <thread>
 #include <vector>
 
-#include "bake/bake.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/version.h"

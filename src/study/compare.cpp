@@ -199,7 +199,7 @@ bool exploded(const Trial& trial) {
 }
 
 Result<Trial> run_scene(const Comparison& comparison, const Method& method, const Scene& scene) {
-  const BakeOutcome& prepared = comparison.prepared;
+  const Prepared& prepared = comparison.prepared;
   const bool own = comparison.settings.region == kJudgedRegion;
   Diagnostics unsaid;
   return simulate_trial(simulation_input(prepared, scene, method.simulation),

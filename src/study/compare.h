@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/bake.h"
 #include "bake/impact.h"
+#include "bake/prepared.h"
 #include "base/character.h"
 #include "base/result.h"
 #include "simulate/simulate.h"
@@ -89,7 +89,7 @@ bool exploded(const Trial& trial);
 struct Comparison {
   std::string character;  // as given
   CompareSettings settings;
-  BakeOutcome prepared;                           // the body, and the range in force
+  Prepared prepared;                              // the body, and the range in force
   RangeOfMotion judged;                           // "human", widened for the start pose as a bake does
   std::vector<std::pair<Joint, double>> widened;  // of `judged`, radians
   std::vector<RandomHit> hits;

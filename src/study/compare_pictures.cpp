@@ -65,7 +65,7 @@ Result<Shown> run_shown(const Character& character, const Comparison& comparison
   Shown shown{method.name, std::move(*trial), {}, {}};
   Trajectory& trajectory = shown.trial.result.trajectory;
   hold_last_frame(trajectory, method.simulation.duration_s);
-  const BakeOutcome& prepared = comparison.prepared;
+  const Prepared& prepared = comparison.prepared;
   ResampleError error;
   shown.clip =
       resample(character, prepared.humanoid, prepared.start.pose, prepared.start.segments, trajectory, error);

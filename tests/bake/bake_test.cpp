@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 /// A bake in memory, with its report.
 struct Baked {
   Character character;
-  BakeOutcome outcome;
+  BakedClip outcome;
   Json report;
 };
 
@@ -27,8 +27,8 @@ Baked bake_of(const std::filesystem::path& file, const BakeSettings& settings) {
   auto outcome = bake(*character, settings, diagnostics);
   EXPECT_TRUE(outcome) << outcome.error().message();
   Baked baked{std::move(*character), std::move(*outcome), {}};
-  const ReducedClip reduced = reduce_keys(baked.character.skeleton, baked.outcome.clip,
-                                          baked.outcome.humanoid.world_from_file, settings.keys);
+  const ReducedClip reduced = reduce_keys(baked.character.skeleton, baked.outcome.timeline.clip,
+                                          baked.outcome.prepared.humanoid.world_from_file, settings.keys);
   baked.report =
       Json::parse(report_json(file.string(), baked.character, settings, baked.outcome, reduced, diagnostics));
   return baked;
@@ -42,9 +42,10 @@ std::filesystem::path mannequin() { return std::string(UKEMI_ASSETS_FOLDER) + "/
 double rebuild_error_deg(const Baked& baked) {
   double largest = 0.0;
   long compared = 0;
-  const Quat world_from_file = baked.outcome.humanoid.world_from_file.rotation;
-  for (std::size_t f = 0; f < baked.outcome.clip.frames.size(); ++f) {
-    const auto file_from_node = world_transforms(baked.character.skeleton, baked.outcome.clip.frames[f]);
+  const Quat world_from_file = baked.outcome.prepared.humanoid.world_from_file.rotation;
+  for (std::size_t f = 0; f < baked.outcome.timeline.clip.frames.size(); ++f) {
+    const auto file_from_node =
+        world_transforms(baked.character.skeleton, baked.outcome.timeline.clip.frames[f]);
     for (const auto& [segment, frame] : baked.report["humanoid"]["frames"].items()) {
       if (frame.is_null()) continue;
       const int node = baked.character.skeleton.find(frame["node"].get<std::string>());
@@ -53,7 +54,7 @@ double rebuild_error_deg(const Baked& baked) {
       const Quat rebuilt =
           world_from_file * rotation_part(file_from_node[node].linear()) * segment_from_node.conjugate();
       const Quat& simulated =
-          baked.outcome.simulation.trajectory.frames[f][index(*segment_named(segment))].rotation;
+          baked.outcome.timeline.trajectory.frames[f][index(*segment_named(segment))].rotation;
       largest = std::max(largest, degrees(angle_between(rebuilt, simulated)));
       ++compared;
     }
@@ -64,8 +65,8 @@ double rebuild_error_deg(const Baked& baked) {
 
 TEST(Bake, ReportAndClipAloneGiveEverySegmentsOrientation) {
   BakeSettings settings;
-  settings.hit = "head";
-  settings.from = "left";
+  settings.hit = Segment::head;
+  settings.from = *parse_direction("left");
   EXPECT_LT(rebuild_error_deg(bake_of(mannequin(), settings)), 0.01);
 }
 
@@ -80,11 +81,11 @@ TEST(Bake, ReportAndClipGiveTheSegmentsOfOtherPeoplesCharacters) {
 
 TEST(Bake, FirstFrameIsTheStartPoseExactly) {
   const Baked baked = bake_of(mannequin(), {});
-  const Pose& first = baked.outcome.clip.frames.front();
-  ASSERT_EQ(first.size(), baked.outcome.start.pose.size());
+  const Pose& first = baked.outcome.timeline.clip.frames.front();
+  ASSERT_EQ(first.size(), baked.outcome.prepared.start.pose.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
-    EXPECT_EQ(first[i].rotation.coeffs(), baked.outcome.start.pose[i].rotation.coeffs());
-    EXPECT_EQ(first[i].translation, baked.outcome.start.pose[i].translation);
+    EXPECT_EQ(first[i].rotation.coeffs(), baked.outcome.prepared.start.pose[i].rotation.coeffs());
+    EXPECT_EQ(first[i].translation, baked.outcome.prepared.start.pose[i].translation);
   }
 }
 
@@ -119,10 +120,10 @@ TEST(Bake, WidensTheRangeOfAJointThatStartsOutside) {
   const auto outcome = bake(*character, settings, diagnostics);
   ASSERT_TRUE(outcome) << outcome.error().message();
   double widened_deg = 0.0;
-  for (const auto& [joint, angle] : outcome->widened)
+  for (const auto& [joint, angle] : outcome->prepared.widened)
     if (joint == Joint::elbow_l) widened_deg = degrees(angle);
   EXPECT_GT(widened_deg, 10.0);
-  EXPECT_EQ(outcome->simulation.limits.over_1deg, 0) << "judged against the widened range";
+  EXPECT_EQ(outcome->limits.over_1deg, 0) << "judged against the widened range";
   bool said = false;
   for (const Warning& warning : diagnostics.warnings()) said = said || warning.subject == "elbow_l";
   EXPECT_TRUE(said);
@@ -136,7 +137,7 @@ TEST(Bake, DoesNotDependOnTheFramesItIsTold) {
   const Baked slow = bake_of(mannequin(), settings);
   settings.simulation.fps = 120.0;
   const Baked fast = bake_of(mannequin(), settings);
-  EXPECT_EQ(slow.outcome.simulation.figures.hash, fast.outcome.simulation.figures.hash);
+  EXPECT_EQ(slow.outcome.figures.hash, fast.outcome.figures.hash);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-#include "bake/clip_timing.h"
+#include "bake/bake.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/exported_clip.h"
 #include "clip/ground_motion.h"
+#include "clip/root_motion.h"
 #include "clip/smooth.h"
 #include "clip/start.h"
 #include "export/additive.h"
@@ -28,22 +28,28 @@ const Character& mannequin() {
 /// A blow to the head, half a second of it.
 BakeSettings flinch() {
   BakeSettings settings;
-  settings.hit = "head";
+  settings.hit = Segment::head;
   settings.preset = "punch";
   settings.simulation.duration_s = 0.5;
   return settings;
 }
 
-BakeOutcome baked(const BakeSettings& settings) {
+BakedClip baked(const BakeSettings& settings) {
   Diagnostics diagnostics;
   auto outcome = bake(mannequin(), settings, diagnostics);
   EXPECT_TRUE(outcome) << outcome.error().message();
   return std::move(*outcome);
 }
 
-const BakeOutcome& plain() {
-  static const BakeOutcome outcome = baked(flinch());
+const BakedClip& plain() {
+  static const BakedClip outcome = baked(flinch());
   return outcome;
+}
+
+Result<ExportedClip> exported_of(const BakedClip& outcome, const BakeSettings& settings) {
+  return exported_clip(mannequin(), outcome.prepared.humanoid,
+                       outcome.prepared.start.segments[index(Segment::pelvis)], outcome.timeline.clip,
+                       settings.ground);
 }
 
 double largest_turn_deg(const Pose& a, const Pose& b) {
@@ -53,30 +59,31 @@ double largest_turn_deg(const Pose& a, const Pose& b) {
   return largest;
 }
 
-double lowest_joint_m(const BakeOutcome& outcome, const Pose& pose) {
+double lowest_joint_m(const BakedClip& outcome, const Pose& pose) {
   double low = 1e9;
   for (const Affine& node : world_transforms(mannequin().skeleton, pose))
-    low = std::min(low, (outcome.humanoid.world_from_file * Vec3(node.translation())).y());
+    low = std::min(low, (outcome.prepared.humanoid.world_from_file * Vec3(node.translation())).y());
   return low;
 }
 
-Vec3 pelvis_at(const BakeOutcome& outcome, const Skeleton& skeleton, const Pose& pose) {
-  const Affine hips = world_transforms(skeleton, pose)[static_cast<std::size_t>(outcome.humanoid.root)];
-  return outcome.humanoid.world_from_file * Vec3(hips.translation());
+Vec3 pelvis_at(const BakedClip& outcome, const Skeleton& skeleton, const Pose& pose) {
+  const Affine hips =
+      world_transforms(skeleton, pose)[static_cast<std::size_t>(outcome.prepared.humanoid.root)];
+  return outcome.prepared.humanoid.world_from_file * Vec3(hips.translation());
 }
 
 TEST(Lead, HoldsTheStartPoseAndLeavesTheImpactFrameAsItIs) {
   BakeSettings settings = flinch();
   settings.lead_s = 0.25;
-  const BakeOutcome outcome = baked(settings);
-  ASSERT_EQ(outcome.clip.frames.size(), plain().clip.frames.size() + 15);
-  ASSERT_EQ(outcome.simulation.trajectory.frames.size(), outcome.clip.frames.size());
-  EXPECT_DOUBLE_EQ(outcome.impact_s, 0.25);
-  for (std::size_t f = 0; f < outcome.clip.frames.size(); ++f) {
-    const Pose& expected = f < 15 ? outcome.start.pose : plain().clip.frames[f - 15];
-    EXPECT_LT(largest_turn_deg(outcome.clip.frames[f], expected), 1e-9) << f;
+  const BakedClip outcome = baked(settings);
+  ASSERT_EQ(outcome.timeline.clip.frames.size(), plain().timeline.clip.frames.size() + 15);
+  ASSERT_EQ(outcome.timeline.trajectory.frames.size(), outcome.timeline.clip.frames.size());
+  EXPECT_DOUBLE_EQ(outcome.timeline.impact_s, 0.25);
+  for (std::size_t f = 0; f < outcome.timeline.clip.frames.size(); ++f) {
+    const Pose& expected = f < 15 ? outcome.prepared.start.pose : plain().timeline.clip.frames[f - 15];
+    EXPECT_LT(largest_turn_deg(outcome.timeline.clip.frames[f], expected), 1e-9) << f;
   }
-  for (const Mark& mark : outcome.clip.marks) {
+  for (const Mark& mark : outcome.timeline.clip.marks) {
     if (mark.name == "start") {
       EXPECT_EQ(mark.time_s, 0.0);
     } else if (mark.name == "impact") {
@@ -88,14 +95,15 @@ TEST(Lead, HoldsTheStartPoseAndLeavesTheImpactFrameAsItIs) {
 TEST(Recovery, EndsInTheStartPoseOnTheFloorWithoutAPop) {
   BakeSettings settings = flinch();
   settings.recover_s = 0.5;
-  const BakeOutcome outcome = baked(settings);
-  const auto& frames = outcome.clip.frames;
-  const std::size_t cut = plain().clip.frames.size() - 1;
+  const BakedClip outcome = baked(settings);
+  const auto& frames = outcome.timeline.clip.frames;
+  const std::size_t cut = plain().timeline.clip.frames.size() - 1;
   ASSERT_EQ(frames.size(), cut + 1 + 30);
-  EXPECT_LT(largest_turn_deg(frames[cut], plain().clip.frames[cut]), 1e-9) << "the simulation stays";
+  EXPECT_LT(largest_turn_deg(frames[cut], plain().timeline.clip.frames[cut]), 1e-9) << "the simulation stays";
   for (int i = 0; i < mannequin().skeleton.size(); ++i) {
-    if (i == outcome.humanoid.root) continue;
-    EXPECT_LT(degrees(angle_between(frames.back()[i].rotation, outcome.start.pose[i].rotation)), 1e-6);
+    if (i == outcome.prepared.humanoid.root) continue;
+    EXPECT_LT(degrees(angle_between(frames.back()[i].rotation, outcome.prepared.start.pose[i].rotation)),
+              1e-6);
   }
   EXPECT_LT(largest_turn_deg(frames.back(), frames[frames.size() - 2]), 0.2) << "arrives at rest";
   double before = 0.0;
@@ -111,13 +119,13 @@ TEST(Recovery, OfWhoLiesGetsUpWhereHeIsAndStaysAboveTheFloor) {
   BakeSettings settings;
   settings.behaviour = Behaviour::limp;
   settings.recover_s = 1.5;
-  const BakeOutcome outcome = baked(settings);
-  const auto& frames = outcome.clip.frames;
+  const BakedClip outcome = baked(settings);
+  const auto& frames = outcome.timeline.clip.frames;
   const std::size_t cut = frames.size() - 1 - 90;
   const Vec3 lying = pelvis_at(outcome, mannequin().skeleton, frames[cut]);
   const Vec3 standing = pelvis_at(outcome, mannequin().skeleton, frames.back());
   EXPECT_LT(lying.y(), 0.5);
-  EXPECT_NEAR(standing.y(), pelvis_at(outcome, mannequin().skeleton, outcome.start.pose).y(), 0.02);
+  EXPECT_NEAR(standing.y(), pelvis_at(outcome, mannequin().skeleton, outcome.prepared.start.pose).y(), 0.02);
   EXPECT_LT(Vec2(standing.x() - lying.x(), standing.z() - lying.z()).norm(), 0.2);
   for (std::size_t f = cut; f < frames.size(); ++f) EXPECT_GT(lowest_joint_m(outcome, frames[f]), -0.01) << f;
 }
@@ -126,11 +134,11 @@ TEST(Recovery, OfWhoLiesToAWalkDoesNotWalkBeforeHeStands) {
   BakeSettings settings;
   settings.clip = "walk";
   settings.at_s = 0.5;
-  settings.from = "back";
+  settings.from = *parse_direction("back");
   settings.recover_s = 1.5;
   settings.recover_to = RecoverTo::clip;
-  const BakeOutcome outcome = baked(settings);
-  const auto& frames = outcome.clip.frames;
+  const BakedClip outcome = baked(settings);
+  const auto& frames = outcome.timeline.clip.frames;
   const Skeleton& skeleton = mannequin().skeleton;
   const std::size_t cut = frames.size() - 1 - 90;
   for (std::size_t f = cut; f < cut + 12; ++f) {
@@ -138,9 +146,10 @@ TEST(Recovery, OfWhoLiesToAWalkDoesNotWalkBeforeHeStands) {
     EXPECT_LT(Vec2(shift.x(), shift.z()).norm(), 0.03) << f << ": slides";
     EXPECT_LT(largest_turn_deg(frames[f], frames[f + 1]), 2.0) << f;
   }
-  const Pose unhit = unhit_pose(skeleton, outcome.humanoid, outcome.start, outcome.clip.duration_s());
+  const Pose unhit = unhit_pose(skeleton, outcome.prepared.humanoid, outcome.prepared.start,
+                                outcome.timeline.clip.duration_s());
   for (int i = 0; i < skeleton.size(); ++i) {
-    if (i == outcome.humanoid.root) continue;
+    if (i == outcome.prepared.humanoid.root) continue;
     EXPECT_LT(degrees(angle_between(frames.back()[i].rotation, unhit[i].rotation)), 1e-6) << "the same phase";
   }
   const Vec3 step =
@@ -175,7 +184,7 @@ Character with_turning_thumb(int& thumb) {
   return character;
 }
 
-BakeOutcome baked_from_walk(const Character& character, bool extra_bones_play) {
+BakedClip baked_from_walk(const Character& character, bool extra_bones_play) {
   BakeSettings settings = flinch();
   settings.clip = "walk";
   settings.at_s = 0.2;
@@ -190,8 +199,8 @@ BakeOutcome baked_from_walk(const Character& character, bool extra_bones_play) {
 TEST(ExtraBones, HoldWhatTheyHaveAtTheImpactOrPlayTheStartClipOn) {
   int thumb = -1;
   const Character character = with_turning_thumb(thumb);
-  const auto held = baked_from_walk(character, false).clip.frames;
-  const auto played = baked_from_walk(character, true).clip.frames;
+  const auto held = baked_from_walk(character, false).timeline.clip.frames;
+  const auto played = baked_from_walk(character, true).timeline.clip.frames;
   ASSERT_EQ(held.size(), played.size());
   const std::size_t impact = 6;
   ASSERT_GT(held.size(), impact + 20);
@@ -203,7 +212,7 @@ TEST(ExtraBones, HoldWhatTheyHaveAtTheImpactOrPlayTheStartClipOn) {
     };
     EXPECT_LT(off(held[f], std::min(clip_s, 0.2)), 1e-6) << f;
     EXPECT_LT(off(played[f], clip_s), 1e-6) << f;
-    for (const SegmentNodes& segment : plain().humanoid.segments)
+    for (const SegmentNodes& segment : plain().prepared.humanoid.segments)
       for (const int node : segment.chain)
         EXPECT_EQ(held[f][node].rotation.coeffs(), played[f][node].rotation.coeffs()) << f << ' ' << node;
   }
@@ -220,8 +229,8 @@ TEST(Facing, OfLyingBodiesIsTowardsFeetOnTheBackAndHeadOnTheBelly) {
 
 TEST(RootMotion, OnARootJointLeavesEveryJointInTheWorld) {
   BakeSettings settings = flinch();
-  settings.root_motion = RootMotion::root;
-  const auto exported = exported_clip(mannequin(), settings, plain());
+  settings.ground.root_motion = RootMotion::root;
+  const auto exported = exported_of(plain(), settings);
   ASSERT_TRUE(exported) << exported.error().message();
   ASSERT_TRUE(exported->with_root);
   const Skeleton& skeleton = exported->with_root->skeleton;
@@ -229,7 +238,7 @@ TEST(RootMotion, OnARootJointLeavesEveryJointInTheWorld) {
   EXPECT_EQ(skeleton.nodes[exported->humanoid.root].parent, exported->root_joint);
   for (std::size_t f = 0; f < exported->clip.frames.size(); f += 10) {
     const auto world = world_transforms(skeleton, exported->clip.frames[f]);
-    const auto whole = world_transforms(mannequin().skeleton, plain().clip.frames[f]);
+    const auto whole = world_transforms(mannequin().skeleton, plain().timeline.clip.frames[f]);
     for (std::size_t i = 0; i < whole.size(); ++i)
       EXPECT_LT((world[i].translation() - whole[i].translation()).norm(), 1e-9);
     const Vec3 root = world[static_cast<std::size_t>(exported->root_joint)].translation();
@@ -241,11 +250,12 @@ TEST(RootMotion, OnARootJointLeavesEveryJointInTheWorld) {
 
 TEST(RootMotion, InPlaceKeepsThePelvisOverItsStart) {
   BakeSettings settings = flinch();
-  settings.root_motion = RootMotion::in_place;
-  const auto exported = exported_clip(mannequin(), settings, plain());
+  settings.ground.root_motion = RootMotion::in_place;
+  const auto exported = exported_of(plain(), settings);
   ASSERT_TRUE(exported);
   const auto pelvis = [&](const Pose& pose) {
-    return segments_of(mannequin().skeleton, plain().humanoid, pose)[index(Segment::pelvis)].translation;
+    return segments_of(mannequin().skeleton, plain().prepared.humanoid, pose)[index(Segment::pelvis)]
+        .translation;
   };
   const Vec3 start = pelvis(exported->clip.frames.front());
   for (const Pose& pose : exported->clip.frames) {
@@ -256,14 +266,15 @@ TEST(RootMotion, InPlaceKeepsThePelvisOverItsStart) {
 
 TEST(Align, StartsAtTheOriginFacingForward) {
   BakeSettings settings = flinch();
-  settings.align = true;
-  BakeOutcome turned = plain();
+  settings.ground.align = true;
+  BakedClip turned = plain();
   const GroundMove away{1.0, Vec3::Zero(), Vec3(3.0, 0.0, -2.0)};
-  for (Pose& pose : turned.clip.frames) pose = away.moved(mannequin().skeleton, turned.humanoid, pose);
-  for (Rigid& segment : turned.start.segments) segment = away * segment;
-  const auto exported = exported_clip(mannequin(), settings, turned);
+  for (Pose& pose : turned.timeline.clip.frames)
+    pose = away.moved(mannequin().skeleton, turned.prepared.humanoid, pose);
+  for (Rigid& segment : turned.prepared.start.segments) segment = away * segment;
+  const auto exported = exported_of(turned, settings);
   ASSERT_TRUE(exported);
-  const Rigid pelvis = canonical_segments_of(mannequin().skeleton, turned.humanoid,
+  const Rigid pelvis = canonical_segments_of(mannequin().skeleton, turned.prepared.humanoid,
                                              exported->clip.frames.front())[index(Segment::pelvis)];
   EXPECT_NEAR(facing(pelvis.rotation), -kPi / 2, 0.01) << "+z";
   EXPECT_NEAR(pelvis.translation.x(), 0.0, 1e-6);
@@ -271,9 +282,9 @@ TEST(Align, StartsAtTheOriginFacingForward) {
 }
 
 TEST(Additive, DeltasOnTopOfTheStartAreTheClip) {
-  const Clip& clip = plain().clip;
+  const Clip& clip = plain().timeline.clip;
   const ReducedClip whole =
-      reduce_keys(mannequin().skeleton, clip, plain().humanoid.world_from_file, {false, 0.0});
+      reduce_keys(mannequin().skeleton, clip, plain().prepared.humanoid.world_from_file, {false, 0.0});
   const ReducedClip delta = additive(whole, clip.frames.front());
   ASSERT_FALSE(delta.tracks.empty());
   EXPECT_LE(delta.tracks.size(), whole.tracks.size());

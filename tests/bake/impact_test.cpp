@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/bake.h"
+#include "bake/settings.h"
+#include "base/parse_segment.h"
 
 namespace ukemi {
 namespace {
@@ -95,7 +96,7 @@ TEST(Presets, SayWhereTheFileIsWrong) {
 
 TEST(Scene, TakesThePresetAndWhatReplacesIt) {
   BakeSettings settings;
-  settings.hit = "head";
+  settings.hit = Segment::head;
   settings.ball_speed_m_s = 9.0;
   const auto scene = scene_of(settings, Quat::Identity());
   ASSERT_TRUE(scene) << scene.error().message();
@@ -110,13 +111,13 @@ TEST(Scene, TakesThePresetAndWhatReplacesIt) {
 }
 
 TEST(Scene, EveryWayOfHittingCarriesTheSameMomentum) {
-  for (const char* kind : {"ball", "push", "impulse"}) {
+  for (const SceneKind kind : {SceneKind::ball, SceneKind::push, SceneKind::impulse}) {
     BakeSettings settings;
     settings.preset = "punch";
     settings.scene = kind;
     const auto scene = scene_of(settings, Quat::Identity());
     ASSERT_TRUE(scene);
-    EXPECT_EQ(name(scene->kind), kind);
+    EXPECT_EQ(scene->kind, kind);
     EXPECT_NEAR(scene->ball_mass_kg * scene->ball_speed_m_s, 26.506, 1e-9);
     EXPECT_NEAR(scene->push_force_n * scene->push_duration_s, 26.506, 1e-9);
     EXPECT_NEAR(scene->impulse_n_s, 26.506, 1e-9);
@@ -125,15 +126,11 @@ TEST(Scene, EveryWayOfHittingCarriesTheSameMomentum) {
 
 TEST(Scene, RefusesUnknownWordsWithTheNearest) {
   BakeSettings settings;
-  settings.hit = "chset";
-  EXPECT_EQ(scene_of(settings, Quat::Identity()).error().what, "unknown segment 'chset'");
-  EXPECT_EQ(scene_of(settings, Quat::Identity()).error().fix, "did you mean 'chest'?");
-  settings = {};
   settings.preset = "puhcn";
   EXPECT_EQ(scene_of(settings, Quat::Identity()).error().fix, "did you mean 'punch'?");
-  settings = {};
-  settings.scene = "slop";
-  EXPECT_EQ(scene_of(settings, Quat::Identity()).error().what, "unknown scene 'slop'");
+  EXPECT_EQ(parse_segment("chset").error().what, "unknown segment 'chset'");
+  EXPECT_EQ(parse_segment("chset").error().fix, "did you mean 'chest'?");
+  EXPECT_EQ(parse_scene("slop").error().what, "unknown scene 'slop'");
 }
 
 }  // namespace

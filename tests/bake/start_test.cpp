@@ -139,10 +139,10 @@ TEST(Start, SegmentsOfTheSimulationStandAboveItsFloor) {
 
 TEST(Report, NamesAReactionByTargetAndDirection) {
   BakeSettings settings;
-  settings.hit = "head";
-  settings.from = "left";
+  settings.hit = Segment::head;
+  settings.from = *parse_direction("left");
   EXPECT_EQ(reaction_name(settings), "head_left");
-  settings.from = "30,-10";
+  settings.from = *parse_direction("30,-10");
   EXPECT_EQ(reaction_name(settings), "head_30_-10");
 }
 

@@ -169,19 +169,21 @@ void expect_human(const std::string& what, Variant variant, double height_m = 1.
   Diagnostics diagnostics;
   const auto outcome = bake(character, settings, diagnostics);
   ASSERT_TRUE(outcome) << outcome.error().message();
-  expect_same_bones(outcome->humanoid, original, mirrored);
-  EXPECT_NEAR(outcome->humanoid.height_m, height_m, 0.02 * height_m);
-  EXPECT_EQ(outcome->simulation.limits.over_1deg, 0);
-  EXPECT_LT(outcome->simulation.figures.joint_separation_max_m, 0.01);
-  const BodyPose& body = outcome->start.segments;
+  expect_same_bones(outcome->prepared.humanoid, original, mirrored);
+  EXPECT_NEAR(outcome->prepared.humanoid.height_m, height_m, 0.02 * height_m);
+  EXPECT_EQ(outcome->limits.over_1deg, 0);
+  EXPECT_LT(outcome->figures.joint_separation_max_m, 0.01);
+  const BodyPose& body = outcome->prepared.start.segments;
   const auto place = [&](Segment s) { return body[index(s)].translation; };
-  const auto high = [&](Segment s) { return place(s).y() / outcome->humanoid.height_m; };
+  const auto high = [&](Segment s) { return place(s).y() / outcome->prepared.humanoid.height_m; };
   EXPECT_NEAR(high(Segment::head), 0.87, 0.05);
   EXPECT_NEAR(high(Segment::forearm_l), 0.62, 0.06);
   for (const Segment foot : {Segment::foot_l, Segment::foot_r}) EXPECT_NEAR(high(foot), 0.04, 0.03);
   const Vec3 right = body[index(Segment::pelvis)].rotation * Vec3::UnitZ();
-  EXPECT_GT((place(Segment::hand_r) - place(Segment::hand_l)).dot(right), 0.15 * outcome->humanoid.height_m);
-  EXPECT_GT((place(Segment::foot_r) - place(Segment::foot_l)).dot(right), 0.05 * outcome->humanoid.height_m);
+  EXPECT_GT((place(Segment::hand_r) - place(Segment::hand_l)).dot(right),
+            0.15 * outcome->prepared.humanoid.height_m);
+  EXPECT_GT((place(Segment::foot_r) - place(Segment::foot_l)).dot(right),
+            0.05 * outcome->prepared.humanoid.height_m);
   const Vec3 forward = body[index(Segment::pelvis)].rotation * Vec3::UnitX();
   for (const int s :
        {index(Segment::chest), index(Segment::head), index(Segment::foot_l), index(Segment::foot_r)})

@@ -31,9 +31,9 @@ std::string kind_of_machine() {
 #endif
 }
 
-Json segments_json(const BakeOutcome& outcome) {
+Json segments_json(const BakedClip& outcome) {
   Json json = Json::array();
-  const Trajectory& trajectory = outcome.simulation.trajectory;
+  const Trajectory& trajectory = outcome.timeline.trajectory;
   const auto frame = static_cast<std::size_t>(kSeen_s * trajectory.fps);
   for (const Rigid& segment : trajectory.frames.at(frame))
     for (int axis = 0; axis < 3; ++axis) json.push_back(segment.translation[axis]);

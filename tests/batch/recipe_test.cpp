@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "bake/impact.h"
-#include "bake/settings.h"
+#include "bake/setting_table.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;
@@ -66,8 +66,8 @@ class RecipeFolder : public testing::Test {
 TEST(Recipe, AMatrixIsEveryCombinationTheFirstAxisSlowest) {
   const auto all = reactions(kHead + "[[matrix]]\nhit = [\"head\", \"chest\"]\nfrom = [\"left\", 45]\n");
   EXPECT_EQ(names(all), (std::vector<std::string>{"head_left", "head_45", "chest_left", "chest_45"}));
-  EXPECT_EQ(all[1].settings.hit, "head");
-  EXPECT_EQ(all[1].settings.from, "45");
+  EXPECT_EQ(all[1].settings.hit, Segment::head);
+  EXPECT_EQ(all[1].settings.from.text, "45");
   EXPECT_EQ(all[1].settings.reaction, "head_45");
   EXPECT_EQ(all[1].settings.outputs, std::vector<fs::path>{"mannequin/head_45.glb"});
   EXPECT_EQ(all[1].settings.sheet, "mannequin/head_45.png");
@@ -155,7 +155,7 @@ jitter = { direction-deg = 10, point-m = 0.03, strength-percent = 20 }
   std::set<std::string> directions;
   double strongest = 0.0, farthest = 0.0;
   for (const Reaction& reaction : all) {
-    const Direction from = *parse_direction(reaction.settings.from);
+    const Direction& from = reaction.settings.from;
     EXPECT_NEAR(degrees(from.azimuth), 90.0, 10.0);
     EXPECT_NEAR(degrees(from.elevation), 5.0, 10.0);
     EXPECT_NEAR(reaction.settings.strength, 1.0, 0.2);
@@ -164,13 +164,14 @@ jitter = { direction-deg = 10, point-m = 0.03, strength-percent = 20 }
     EXPECT_EQ(reaction.seed, 7u);
     strongest = std::max(strongest, reaction.settings.strength);
     farthest = std::max(farthest, std::abs(reaction.settings.aim_up_m));
-    directions.insert(reaction.settings.from);
+    directions.insert(reaction.settings.from.text);
   }
   EXPECT_EQ(directions.size(), 40u);
   EXPECT_GT(strongest, 1.1);
   EXPECT_GT(farthest, 0.015);
   const auto again = reactions(toml);
-  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].settings.from, again[i].settings.from);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_EQ(all[i].settings.from.text, again[i].settings.from.text);
 }
 
 TEST(Recipe, ARejectedTakeGetsTheNextSeedAndNoOtherChanges) {
@@ -178,8 +179,8 @@ TEST(Recipe, ARejectedTakeGetsTheNextSeedAndNoOtherChanges) {
       kHead + "[[matrix]]\nhit = [\"head\", \"chest\"]\njitter = { direction-deg = 5 }\n";
   const auto before = reactions(toml);
   const auto after = reactions(toml, {{{"mannequin", "chest_front"}, 2}});
-  EXPECT_EQ(after[0].settings.from, before[0].settings.from);
-  EXPECT_NE(after[1].settings.from, before[1].settings.from);
+  EXPECT_EQ(after[0].settings.from.text, before[0].settings.from.text);
+  EXPECT_NE(after[1].settings.from.text, before[1].settings.from.text);
   EXPECT_EQ(after[1].seed, 2u);
   EXPECT_EQ(names(after), names(before));
 }

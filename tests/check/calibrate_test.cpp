@@ -108,7 +108,7 @@ TEST(Calibrate, CalmStandingNeverTriggersAndTheDefaultHitDoes) {
   settings.simulation.duration_s = 0.5;
   const auto hit = bake(stage.character, settings, diagnostics);
   ASSERT_TRUE(hit) << hit.error().message();
-  EXPECT_GT(triggers(stage.speeds(hit->clip)), 0);
+  EXPECT_GT(triggers(stage.speeds(hit->timeline.clip)), 0);
 }
 
 TEST(Calibrate, WalkingIsSeenAndBoundsTheThresholds) {

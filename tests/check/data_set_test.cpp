@@ -50,12 +50,12 @@ std::string baked(const Character& character, std::string& problems) {
     problems += " bake: " + outcome.error().message();
     return "failed";
   }
-  const LimitFigures& limits = outcome->simulation.limits;
+  const LimitFigures& limits = outcome->limits;
   if (limits.over_1deg > 0) problems += " outside the range of motion";
-  if (outcome->simulation.figures.joint_separation_max_m > 0.01 * outcome->humanoid.height_m)
+  if (outcome->figures.joint_separation_max_m > 0.01 * outcome->prepared.humanoid.height_m)
     problems += " joints part";
   return fmt::format("{:>5} {:>6.2f} {:>7.1f}", limits.over_1deg, limits.excess_max_deg,
-                     1000.0 * outcome->simulation.figures.joint_separation_max_m);
+                     1000.0 * outcome->figures.joint_separation_max_m);
 }
 
 /// The verdict in the words of `ukemi inspect`.

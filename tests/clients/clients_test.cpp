@@ -164,7 +164,7 @@ class Clients : public testing::Test {
       BakedFile baked;
       if (!write(character, settings, baked)) continue;
       settings.append = true;
-      settings.hit = "head";
+      settings.hit = Segment::head;
       if (settings.additive) settings.lead_s = 0.1;
       if (!write(character, settings, baked)) continue;
       Json item{{"name", source.filename().string() + " with " + option}, {"before", nullptr}};
@@ -179,7 +179,7 @@ class Clients : public testing::Test {
 
   /// At times between the frames; the tracks as we interpolate them.
   void play_glb(const fs::path& file, const Character& character, const BakedFile& baked) {
-    const Similarity& world_from_file = baked.outcome.humanoid.world_from_file;
+    const Similarity& world_from_file = baked.outcome.prepared.humanoid.world_from_file;
     const ReducedClip& clip = baked.reduced;
     const bool has_world = character.format != SourceFormat::gltf;
     Json item{{"name", character.path.filename().string() + " as .glb"},
@@ -188,7 +188,7 @@ class Clients : public testing::Test {
               {"three_adds_offsets", false}};
     item["tolerance"] = kGltfToleranceM / (has_world ? 1.0 : world_from_file.scale);
     item["nodes"] = character.skeleton.order;
-    const double end_s = baked.outcome.clip.duration_s();
+    const double end_s = baked.outcome.timeline.clip.duration_s();
     const Animation animation{"", 0, end_s, 0, clip.tracks};
     for (int i = 0; i < kTimes; ++i) {
       const double time = end_s * i / (kTimes - 1);
@@ -218,9 +218,9 @@ class Clients : public testing::Test {
   }
 
   /// At frames, in the file's unit; joints in the order in which the file lists them.
-  void play_bvh(const fs::path& file, const Character& character, const BakeOutcome& outcome) {
-    const Similarity& world_from_file = outcome.humanoid.world_from_file;
-    const Clip& clip = outcome.clip;
+  void play_bvh(const fs::path& file, const Character& character, const BakedClip& outcome) {
+    const Similarity& world_from_file = outcome.prepared.humanoid.world_from_file;
+    const Clip& clip = outcome.timeline.clip;
     const Character written = loaded(file);
     const bool is_bvh = character.format == SourceFormat::bvh;
     const double unit = is_bvh ? world_from_file.scale : BvhOptions{}.metres_per_unit;

@@ -50,7 +50,7 @@ std::string bake_all(const fs::path& folder) {
     EXPECT_TRUE(content);
     bytes.append(content->begin(), content->end());
   }
-  bytes += baked->outcome.simulation.figures.hash;
+  bytes += baked->outcome.figures.hash;
   return bytes + baked->report.substr(0, baked->report.find("\"timings_s\""));
 }
 

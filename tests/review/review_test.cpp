@@ -33,7 +33,7 @@ class Reviewed : public testing::Test {
     fs::create_directories(*baked);
     for (const char* hit : {"head", "chest"}) {
       BakeSettings settings;
-      settings.hit = hit;
+      settings.hit = *segment_named(hit);
       settings.outputs = {*baked / (std::string(hit) + ".glb"), *baked / (std::string(hit) + ".bvh")};
       settings.report = *baked / (std::string(hit) + ".json");
       Diagnostics diagnostics;

@@ -53,7 +53,7 @@ struct Tally {
   int failed = 0, settled = 0;
 };
 
-void add_hit(Tally& tally, const BakeOutcome& prepared, const Scene& scene) {
+void add_hit(Tally& tally, const Prepared& prepared, const Scene& scene) {
   step_seconds = 0.0;
   Diagnostics diagnostics;
   const double before = thread_seconds();
@@ -99,7 +99,7 @@ SimulationSettings fixed() {
   return settings;
 }
 
-void measure_simulation(const BakeOutcome& prepared, int hits) {
+void measure_simulation(const Prepared& prepared, int hits) {
   std::vector<Tally> tallies = {{"default", {}}, {"without tone", limp()}, {"fixed:480", fixed()}};
   const Quat& pelvis = prepared.start.segments[index(Segment::pelvis)].rotation;
   for (const RandomHit& hit : random_hits(1, hits))
@@ -114,8 +114,8 @@ Status measure_bakes(const Character& character, int count) {
   std::size_t bytes = 0;
   for (const RandomHit& hit : random_hits(2, count)) {
     BakeSettings settings;
-    settings.hit = name(hit.segment);
-    settings.from = fmt::format("{:.3f}", degrees(hit.from.azimuth) - 180.0);
+    settings.hit = hit.segment;
+    settings.from = *parse_direction(fmt::format("{:.3f}", degrees(hit.from.azimuth) - 180.0));
     Diagnostics diagnostics;
     const double start = thread_seconds();
     const auto prepared = prepare_bake(character, settings, diagnostics);
@@ -128,10 +128,10 @@ Status measure_bakes(const Character& character, int count) {
     const auto outcome = bake(character, settings, diagnostics);
     if (!outcome) return outcome.error();
     const double baked = thread_seconds();
-    const ReducedClip reduced =
-        reduce_keys(character.skeleton, outcome->clip, outcome->humanoid.world_from_file, settings.keys);
+    const ReducedClip reduced = reduce_keys(character.skeleton, outcome->timeline.clip,
+                                            outcome->prepared.humanoid.world_from_file, settings.keys);
     const double cut = thread_seconds();
-    const auto glb = write_glb(character, outcome->humanoid, reduced, GltfOptions{});
+    const auto glb = write_glb(character, outcome->prepared.humanoid, reduced, GltfOptions{});
     if (!glb) return glb.error();
     const double written = thread_seconds();
     bytes += glb->size() + report_json("", character, settings, *outcome, reduced, diagnostics).size();

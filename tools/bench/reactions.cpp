@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "bake/settings.h"
+#include "bake/setting_table.h"
 #include "load/character_path.h"
 #include "load/load.h"
 
@@ -42,8 +42,8 @@ double cpu() {
 ReactionRow run(const Character& character, BakeSettings settings, const std::string& segment, double azimuth,
                 double n_s) {
   ReactionRow row;
-  settings.hit = segment;
-  settings.from = fmt::format("{:g}", azimuth);
+  settings.hit = *segment_named(segment);
+  settings.from = *parse_direction(fmt::format("{:g}", azimuth));
   Diagnostics diagnostics;
   auto prepared = prepare_bake(character, settings, diagnostics);
   if (!prepared) {

@@ -1,4 +1,4 @@
-#include "bake/settings.h"
+#include "bake/setting_table.h"
 
 #include <gtest/gtest.h>
 

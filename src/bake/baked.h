@@ -1,0 +1,47 @@
+// What a bake leaves: a timeline and the figures of its simulation, then what is exported of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bake/prepared.h"
+#include "clip/timeline.h"
+#include "export/export.h"
+#include "simulate/simulate.h"
+
+namespace ukemi {
+
+/// Wall-clock seconds.
+struct BakeTimings {
+  double load = 0, simulate = 0, resample = 0, export_ = 0, render = 0, total = 0;
+};
+
+/// A simulated reaction as a clip, before anything is written.
+struct BakedClip {
+  Prepared prepared;
+  LimitFigures limits;
+  SimulationFigures figures;
+  ControllerReport behaviour;
+  Timeline timeline;               // its still tail trimmed, lead and recovery added
+  double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
+  ResampleError resample_error;
+  BakeTimings timings_s;
+};
+
+struct OutputFile {
+  std::filesystem::path path;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// A baked clip with its files, and the report on it.
+struct BakedFile {
+  BakedClip outcome;
+  ReducedClip reduced;
+  std::vector<Vec3> root_curve;   // see ExportedClip
+  std::vector<OutputFile> files;  // clips and pictures
+  std::string report;             // JSON, format 1
+};
+
+}  // namespace ukemi

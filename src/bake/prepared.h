@@ -1,0 +1,47 @@
+// What the simulation of a bake is given.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bake/settings.h"
+#include "base/character.h"
+#include "base/result.h"
+#include "behave/behaviour.h"
+#include "body/body.h"
+#include "body/muscles.h"
+#include "clip/start.h"
+#include "clip/timeline.h"
+#include "humanoid/humanoid.h"
+#include "restrict/active.h"
+#include "restrict/range_of_motion.h"
+#include "simulate/simulate.h"
+
+namespace ukemi {
+
+/// A character in its place, and what happens to it. Nothing of it changes afterwards.
+struct Prepared {
+  std::string reaction;  // "head_left": name of the clip
+  Humanoid humanoid;
+  Start start;
+  ArticulatedBody body;
+  RangeOfMotion range;                            // in force: widened joints included
+  std::vector<std::pair<Joint, double>> widened;  // radians
+  Scene scene;
+  ActiveThresholds thresholds;  // of the active restriction
+  MuscleStrength strength;
+  BehaviourSettings behaviour;
+
+  Actor actor(const Character& character) const { return {character, humanoid, start, body}; }
+};
+
+/// Errors: those of the rooms above.
+Result<Prepared> prepare_bake(const Character& character, const BakeSettings& settings,
+                              Diagnostics& diagnostics);
+
+/// What the simulation of a prepared bake is given.
+SimulationInput simulation_input(const Prepared& prepared, const Scene& scene,
+                                 const SimulationSettings& settings);
+
+}  // namespace ukemi

@@ -1,0 +1,555 @@
+#include "bake/setting_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "bake/impact.h"
+#include "bake/map_file.h"
+#include "bake/settings.h"
+#include "base/errors.h"
+#include "base/nearest.h"
+#include "base/parse_segment.h"
+#include "base/segments.h"
+
+namespace ukemi {
+namespace {
+
+std::vector<std::string> values_of(double value) { return {fmt::format("{}", value)}; }
+std::vector<std::string> values_of(const std::string& value) {
+  return value.empty() ? std::vector<std::string>() : std::vector<std::string>{value};
+}
+template <typename T>
+std::vector<std::string> values_of(const std::optional<T>& value) {
+  return value ? values_of(*value) : std::vector<std::string>();
+}
+
+/// A number held in `access(target)`, which is `scale` times what the user writes.
+template <typename Target, typename Access>
+SettingOf<Target> number(std::string_view name, std::string unit, const Range& range, std::string help,
+                         Access access, double scale = 1.0) {
+  SettingOf<Target> setting;
+  setting.kind = SettingOf<Target>::Kind::number;
+  setting.name = name;
+  setting.value = std::move(unit);
+  setting.help = std::move(help);
+  setting.range = range;
+  setting.set = [access, range, scale](Target& target, const std::string& text) -> Status {
+    const auto value = parse_number(text, range);
+    if (!value) return value.error();
+    access(target) = scale * *value;
+    return Done{};
+  };
+  setting.get = [access, scale](const Target& target) {
+    const std::optional<double> held = access(target);
+    return held ? values_of(*held / scale) : std::vector<std::string>();
+  };
+  return setting;
+}
+
+Status any_text(const std::string&) { return Done{}; }
+
+/// Text held in `access(target)` once `check` agrees.
+template <typename Target, typename Access>
+SettingOf<Target> text(std::string_view name, std::string value, std::string help, Access access,
+                       std::function<Status(const std::string&)> check = any_text) {
+  SettingOf<Target> setting;
+  setting.name = name;
+  setting.value = std::move(value);
+  setting.help = std::move(help);
+  setting.set = [access, check = std::move(check)](Target& target, const std::string& given) -> Status {
+    if (const Status status = check(given); !status) return status.error();
+    access(target) = given;
+    return Done{};
+  };
+  setting.get = [access](const Target& target) { return values_of(access(target)); };
+  return setting;
+}
+
+/// One of `words`, which stand for the `values` of `access(target)`.
+template <typename Target, typename Value, typename Access>
+SettingOf<Target> choice(std::string_view name, std::vector<std::pair<std::string, Value>> words,
+                         std::string help, Access access) {
+  SettingOf<Target> setting;
+  setting.kind = SettingOf<Target>::Kind::choice;
+  setting.name = name;
+  setting.help = std::move(help);
+  for (const auto& [word, value] : words) setting.words.push_back(word);
+  setting.value = fmt::format("{}", fmt::join(setting.words, "|"));
+  setting.set = [access, words, known = setting.words](Target& target, const std::string& given) -> Status {
+    for (const auto& [word, value] : words) {
+      if (word != given) continue;
+      access(target) = value;
+      return Done{};
+    }
+    return usage_error(fmt::format("unknown word '{}'", given), suggestion(given, known));
+  };
+  setting.get = [access, words](const Target& target) -> std::vector<std::string> {
+    for (const auto& [word, value] : words)
+      if (access(target) == value) return {word};
+    return {};
+  };
+  return setting;
+}
+
+/// A switch held in `access(target)`.
+template <typename Target, typename Access>
+SettingOf<Target> on_off(std::string_view name, std::string help, Access access, std::string opposite = "") {
+  SettingOf<Target> setting = choice<Target, bool>(name, {{"true", true}, {"false", false}}, help, access);
+  setting.kind = SettingOf<Target>::Kind::on_off;
+  setting.value.clear();
+  setting.opposite = std::move(opposite);
+  return setting;
+}
+
+Status check_segment(const std::string& text) {
+  const auto segment = parse_segment(text);
+  return segment ? Status(Done{}) : Status(segment.error());
+}
+
+std::string word_of(Segment segment) { return std::string(name(segment)); }
+std::string word_of(const Direction& direction) { return direction.text; }
+std::string word_of(const std::optional<SceneKind>& scene) {
+  return scene ? std::string(name(*scene)) : std::string();
+}
+
+/// A value held in `access(target)` that `parse` reads.
+template <typename Target, typename Access, typename Parse>
+SettingOf<Target> parsed(std::string_view name, std::string value, std::string help, Access access,
+                         Parse parse) {
+  SettingOf<Target> setting;
+  setting.name = name;
+  setting.value = std::move(value);
+  setting.help = std::move(help);
+  setting.set = [access, parse](Target& target, const std::string& given) -> Status {
+    const auto held = parse(given);
+    if (!held) return held.error();
+    access(target) = *held;
+    return Done{};
+  };
+  setting.get = [access](const Target& target) { return values_of(word_of(access(target))); };
+  return setting;
+}
+
+Status add_to_map(HumanoidOptions& target, const std::string& segment, const std::string& node) {
+  if (target.map.emplace(segment, node).second) return Done{};
+  return usage_error(fmt::format("'{}' gets two nodes", segment), "give each segment one node");
+}
+
+bool names_map_file(std::string_view text) {
+  return text.find('=') == text.npos && (text.ends_with(".toml") || text.ends_with(".json"));
+}
+
+Status take_map(HumanoidOptions& target, const std::string& text) {
+  if (names_map_file(text)) {
+    const auto map = read_map(text);
+    if (!map) return map.error();
+    for (const auto& [segment, node] : *map)
+      if (const Status added = add_to_map(target, segment, node); !added) return added.error();
+    return Done{};
+  }
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals + 1 == text.size())
+    return usage_error(fmt::format("'{}' is not SEGMENT=NODE, and no .toml or .json file", text),
+                       "write head=NodeName or head=#12");
+  const std::string segment = text.substr(0, equals);
+  if (const Status known = check_segment(segment); !known) return known.error();
+  return add_to_map(target, segment, text.substr(equals + 1));
+}
+
+HumanoidSetting map_setting() {
+  HumanoidSetting setting;
+  setting.kind = HumanoidSetting::Kind::list;
+  setting.name = "map";
+  setting.value = "SEGMENT=NODE|FILE";
+  setting.help =
+      "node that moves a segment, by its name or #INDEX, where the program finds another or none; a .toml or "
+      ".json file may name many, like the one that inspect --json prints";
+  setting.set = take_map;
+  setting.get = [](const HumanoidOptions& target) {
+    std::vector<std::string> entries;
+    for (const auto& [segment, node] : target.map) entries.push_back(segment + "=" + node);
+    return entries;
+  };
+  return setting;
+}
+
+HumanoidSetting unit_setting() {
+  static constexpr std::array<std::pair<const char*, double>, 6> kUnits = {
+      {{"m", 1.0}, {"dm", 0.1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}};
+  HumanoidSetting setting;
+  setting.name = "unit";
+  setting.value = "UNIT";
+  setting.help = "length unit of the file: m, dm, cm, mm, in, ft, or metres per unit";
+  setting.unset = "found out";
+  setting.set = [](HumanoidOptions& target, const std::string& text) -> Status {
+    const auto unit =
+        std::find_if(kUnits.begin(), kUnits.end(), [&](const auto& entry) { return text == entry.first; });
+    const auto metres = unit == kUnits.end() ? number_in(text) : std::optional(unit->second);
+    if (!metres || !Range{0.0, 1e6, true}.contains(*metres))
+      return usage_error(fmt::format("'{}' is no unit", text),
+                         "give m, dm, cm, mm, in, ft, or metres per unit");
+    target.metres_per_unit = *metres;
+    return Done{};
+  };
+  setting.get = [](const HumanoidOptions& target) { return values_of(target.metres_per_unit); };
+  return setting;
+}
+
+HumanoidSetting up_setting() {
+  HumanoidSetting setting = choice<HumanoidOptions, std::optional<char>>(
+      "up", {{"y", 'y'}, {"z", 'z'}}, "up axis of the file", [](auto& t) -> auto& { return t.up_axis; });
+  setting.unset = "found out";
+  return setting;
+}
+
+HumanoidSetting height_setting() {
+  HumanoidSetting setting = number<HumanoidOptions>(
+      "height", "M", Range{0.05, 50.0}, "height of the character, sole to crown",
+      [](auto& t) -> auto& { return t.height_m; });
+  setting.unset = "found out";
+  return setting;
+}
+
+/// The same setting, of a bake's humanoid options.
+Setting lifted(const HumanoidSetting& inner) {
+  Setting setting;
+  setting.kind = static_cast<Setting::Kind>(inner.kind);
+  setting.name = inner.name;
+  setting.value = inner.value;
+  setting.help = inner.help;
+  setting.unset = inner.unset;
+  setting.range = inner.range;
+  setting.words = inner.words;
+  setting.set = [set = inner.set](BakeSettings& s, const std::string& text) { return set(s.humanoid, text); };
+  setting.get = [get = inner.get](const BakeSettings& s) { return get(s.humanoid); };
+  return setting;
+}
+
+using Settings = std::vector<Setting>;
+
+Setting with_unset(Setting setting, std::string unset) {
+  setting.unset = std::move(unset);
+  return setting;
+}
+
+Settings hit_settings() {
+  using S = BakeSettings;
+  return {
+      parsed<S>(
+          "hit", "SEGMENT",
+          "what is hit: pelvis abdomen chest head clavicle_l upperarm_l forearm_l hand_l thigh_l shank_l "
+          "foot_l, or _r",
+          [](auto& s) -> auto& { return s.hit; }, parse_segment),
+      parsed<S>(
+          "from", "DIR",
+          "where the blow comes from: front back left right above, or AZIMUTH[,ELEVATION] in degrees, 0 = "
+          "from the front, 90 = from the character's left [-360 to 360, -90 to 90]",
+          [](auto& s) -> auto& { return s.from; }, parse_direction),
+      text<S>(
+          "preset", "NAME", "punch kick medicine-ball football tackle shot",
+          [](auto& s) -> auto& { return s.preset; }, check_preset),
+      with_unset(number<S>(
+                     "ball-mass", "KG", Range{0.001, 10000.0}, "mass of the ball or box",
+                     [](auto& s) -> auto& { return s.ball_mass_kg; }),
+                 "the preset's"),
+      with_unset(number<S>(
+                     "ball-speed", "M_S", Range{0.01, 1000.0}, "its speed at contact",
+                     [](auto& s) -> auto& { return s.ball_speed_m_s; }),
+                 "the preset's"),
+      with_unset(number<S>(
+                     "ball-radius", "M", Range{0.005, 5.0}, "its radius, or half edge",
+                     [](auto& s) -> auto& { return s.ball_radius_m; }),
+                 "the preset's"),
+      number<S>(
+          "strength", "TIMES", Range{0.01, 100.0}, "of the blow: times the preset's momentum",
+          [](auto& s) -> auto& { return s.strength; }),
+      number<S>(
+          "aim-up", "M", Range{-5.0, 5.0}, "ball, box: meets the segment so far above its centre",
+          [](auto& s) -> auto& { return s.aim_up_m; }),
+      number<S>(
+          "aim-left", "M", Range{-5.0, 5.0}, "ball, box: so far to the left, seen from where it comes from",
+          [](auto& s) -> auto& { return s.aim_left_m; }),
+      with_unset(parsed<S>(
+                     "scene", "ball|slope|fall|push|impulse|box",
+                     "what happens: a ball flies in, a ball rolls down a ramp, the body is tipped over or "
+                     "dropped, a force acts for a time, momentum is given at once, a box slides in",
+                     [](auto& s) -> auto& { return s.scene; }, parse_scene),
+                 "the preset's"),
+      number<S>(
+          "slope-deg", "DEG", Range{1.0, 60.0}, "slope: of the ramp",
+          [](auto& s) -> auto& { return s.slope_deg; }),
+      number<S>(
+          "fall-height", "M", Range{0.0, 50.0}, "fall: above the floor",
+          [](auto& s) -> auto& { return s.fall_height_m; }),
+      number<S>(
+          "tip-speed", "M_S", Range{0.0, 20.0}, "fall: of the centre of mass, away from --from",
+          [](auto& s) -> auto& { return s.tip_speed_m_s; }),
+  };
+}
+
+Settings body_settings() {
+  using S = BakeSettings;
+  Settings settings = {
+      with_unset(number<S>(
+                     "mass", "KG", Range{0.001, 10000.0}, "mass of the body",
+                     [](auto& s) -> auto& { return s.mass_kg; }),
+                 "73 kg (height / 1.741 m)^3, female 61.9 kg (height / 1.735 m)^3"),
+      choice<S, Sex>(
+          "sex", {{"male", Sex::male}, {"female", Sex::female}}, "table of the segments' masses",
+          [](auto& s) -> auto& { return s.sex; }),
+  };
+  for (const HumanoidSetting& setting : humanoid_settings()) settings.push_back(lifted(setting));
+  return settings;
+}
+
+Settings start_settings() {
+  using S = BakeSettings;
+  return {
+      with_unset(text<S>(
+                     "pose", "rest|stand|guard|FILE",
+                     "still pose to start from: a word, or the first frame (without clips the rest pose) of "
+                     "another humanoid's .bvh .glb .gltf .vrm .fbx .dae file",
+                     [](auto& s) -> auto& { return s.pose; }),
+                 "stand; a file that only has motion starts from its own clip"),
+      text<S>(
+          "clip", "NAME|FILE[#NAME]",
+          "motion to start from: a clip of the file, by its name or #INDEX, or of another humanoid's file "
+          "(its "
+          "first, unless named after '#'), whose segments then lead the character's",
+          [](auto& s) -> auto& { return s.clip; }),
+      with_unset(number<S>(
+                     "at", "S", Range{0.0, 86400.0}, "time in that clip at the first contact",
+                     [](auto& s) -> auto& { return s.at_s; }),
+                 "0"),
+  };
+}
+
+Settings behaviour_settings_table() {
+  using S = BakeSettings;
+  return {
+      with_unset(choice<S, std::optional<Behaviour>>(
+                     "behaviour",
+                     {{"alert", Behaviour::alert}, {"dazed", Behaviour::dazed}, {"limp", Behaviour::limp}},
+                     "alert: balances, steps, protects itself; dazed: late and weak, at most one step; limp: "
+                     "a body that nobody is in, which --tone stiffens at first",
+                     [](auto& s) -> auto& { return s.behaviour; }),
+                 "alert, or limp with --rate fixed"),
+      number<S>(
+          "steps", "N", Range{0.0, 20.0}, "recovery steps at most; 0: the feet stay planted",
+          [](auto& s) -> auto& { return s.most_steps; }),
+      number<S>(
+          "muscle", "TIMES", Range{0.1, 10.0}, "muscle strength, of a healthy adult's",
+          [](auto& s) -> auto& { return s.muscle; }),
+      with_unset(
+          number<S>(
+              "latency", "S", Range{0.0, 2.0}, "time from the blow to the first reaction of the balance",
+              [](auto& s) -> auto& { return s.latency_s; }),
+          "0.10, dazed 0.20"),
+      number<S>(
+          "seed", "N", Range{0.0, 4294967295.0},
+          "another take of the same blow: stance, latency, arms and steps vary as people do; 0: the mean of "
+          "all",
+          [](auto& s) -> auto& { return s.seed; }),
+  };
+}
+
+Setting rate_setting() {
+  Setting setting;
+  setting.name = "rate";
+  setting.value = "adaptive|fixed:HZ";
+  setting.help = "time steps of the simulation [HZ 60 to 10000]";
+  setting.set = [](BakeSettings& settings, const std::string& text) -> Status {
+    const std::string prefix = "fixed:";
+    if (text != "adaptive" && !text.starts_with(prefix))
+      return usage_error(fmt::format("unknown word '{}'", text), "give adaptive or fixed:HZ");
+    const auto hz = text == "adaptive" ? Result<double>(0.0)
+                                       : parse_number(text.substr(prefix.size()), Range{60.0, 10000.0});
+    if (!hz) return hz.error();
+    settings.simulation.fixed_hz = *hz;
+    return Done{};
+  };
+  setting.get = [](const BakeSettings& settings) -> std::vector<std::string> {
+    const double hz = settings.simulation.fixed_hz;
+    return {hz > 0.0 ? fmt::format("fixed:{}", hz) : "adaptive"};
+  };
+  return setting;
+}
+
+Settings method_settings() {
+  using S = BakeSettings;
+  return {
+      choice<S, Limits>(
+          "limits", {{"edges", Limits::edges}, {"segments", Limits::segments}, {"axis", Limits::axis}},
+          "how the range of motion is kept", [](auto& s) -> auto& { return s.simulation.limits; }),
+      text<S>(
+          "region", "NAME|FILE", "range of motion: human diamond box, or a TOML file",
+          [](auto& s) -> auto& { return s.region; }),
+      choice<S, Active>(
+          "active",
+          {{"implicit", Active::implicit}, {"explicit", Active::explicit_torque}, {"off", Active::off}},
+          "active restriction: joints resist fast rotation, like a person who tenses up",
+          [](auto& s) -> auto& { return s.simulation.active; }),
+      number<S>(
+          "active-k", "1_S", Range{0.0, 2000.0, true}, "its strength k",
+          [](auto& s) -> auto& { return s.simulation.active_k; }),
+      with_unset(text<S>(
+                     "active-file", "FILE", "its thresholds, as calibrate writes them",
+                     [](auto& s) -> auto& { return s.active_file; }),
+                 "the program's own"),
+      number<S>(
+          "active-delay", "S", Range{0.0, 10.0}, "time before it sets in",
+          [](auto& s) -> auto& { return s.simulation.active_delay_s; }),
+      with_unset(number<S>(
+                     "tone", "0..1", Range{0.0, 1.0},
+                     "share of a man's joint torques that hold the start pose at first",
+                     [](auto& s) -> auto& { return s.simulation.tone; }),
+                 "0.3, or 0 with --rate fixed"),
+      number<S>(
+          "tone-fade", "S", Range{0.0, 10.0, true}, "time in which it goes",
+          [](auto& s) -> auto& { return s.simulation.tone_fade_s; }),
+      with_unset(number<S>(
+                     "damping", "1_S", Range{0.0, 100.0}, "joint damping",
+                     [](auto& s) -> auto& { return s.simulation.damping; }),
+                 "10, or 0 with --rate fixed"),
+      rate_setting(),
+  };
+}
+
+Settings clip_settings() {
+  using S = BakeSettings;
+  return {
+      number<S>(
+          "duration", "S", Range{0.0, 60.0, true}, "length at most",
+          [](auto& s) -> auto& { return s.simulation.duration_s; }),
+      on_off<S>(
+          "until-rest", "end the clip once everything rests", [](auto& s) -> auto& { return s.until_rest; },
+          "keep the still tail, up to --duration"),
+      number<S>(
+          "hold", "S", Range{0.0, 60.0}, "kept after that", [](auto& s) -> auto& { return s.hold_s; }),
+      number<S>(
+          "fps", "N", Range{1.0, 1000.0}, "frames per second",
+          [](auto& s) -> auto& { return s.simulation.fps; }),
+      number<S>(
+          "lead", "S", Range{0.0, 60.0},
+          "start of the clip before the impact: the start clip (round and round where it is a cycle), or the "
+          "pose held",
+          [](auto& s) -> auto& { return s.lead_s; }),
+      with_unset(number<S>(
+                     "recover", "S", Range{0.0, 60.0, true},
+                     "blend from the end of the simulation back to the start, in this time",
+                     [](auto& s) -> auto& { return s.recover_s; }),
+                 "none"),
+      choice<S, RecoverTo>(
+          "to", {{"rest", RecoverTo::rest}, {"clip", RecoverTo::clip}},
+          "recover: to the start pose, or to what the start clip, a cycle round and round, plays by then",
+          [](auto& s) -> auto& { return s.recover_to; }),
+      choice<S, RootMotion>(
+          "root-motion",
+          {{"hips", RootMotion::hips}, {"root", RootMotion::root}, {"in-place", RootMotion::in_place}},
+          "motion over the ground: on the hips, on a root joint above them (of a glTF; added where there is "
+          "none), or left out (the report keeps it)",
+          [](auto& s) -> auto& { return s.ground.root_motion; }),
+      on_off<S>(
+          "align", "turn and move the clip so that it starts at the origin, facing +z",
+          [](auto& s) -> auto& { return s.ground.align; }),
+      on_off<S>(
+          "additive",
+          "glTF clip as the difference from its first frame: rotation start^-1 * value, translation value - "
+          "start",
+          [](auto& s) -> auto& { return s.additive; }),
+      choice<S, bool>(
+          "extra-bones", {{"hold", false}, {"clip", true}},
+          "bones of no segment (fingers, face): hold their pose at the impact, or play the start clip on",
+          [](auto& s) -> auto& { return s.extra_bones_play; }),
+      with_unset(number<S>(
+                     "smooth", "HZ", Range{0.5, 500.0},
+                     "zero-phase low-pass after the impact, -6 dB at HZ (below half of --fps)",
+                     [](auto& s) -> auto& { return s.smooth_hz; }),
+                 "off"),
+      choice<S, bool>(
+          "keys", {{"reduced", true}, {"all", false}}, "keys of a glTF clip",
+          [](auto& s) -> auto& { return s.keys.enabled; }),
+      number<S>(
+          "key-error-mm", "MM", Range{0.0, 1000.0, true}, "how far reduced keys may move a joint",
+          [](auto& s) -> auto& { return s.keys.tolerance_m; }, 0.001),
+  };
+}
+
+Settings out_settings() {
+  using S = BakeSettings;
+  return {
+      choice<S, bool>(
+          "rotation-type", {{"float", false}, {"int16", true}},
+          "numbers of a glTF clip's rotations; int16 halves them, within the same error",
+          [](auto& s) -> auto& { return s.keys.short_rotations; }),
+      on_off<S>(
+          "clip-only", "glTF of skeleton and clip, without the mesh",
+          [](auto& s) -> auto& { return s.clip_only; }),
+      with_unset(
+          choice<S, std::optional<double>>(
+              "bvh-unit", {{"cm", 0.01}, {"m", 1.0}}, "length unit of a BVH that does not come from a BVH",
+              [](auto& s) -> auto& { return s.bvh_metres_per_unit; }),
+          "cm"),
+  };
+}
+
+void append(Settings& settings, std::string_view group, Settings more) {
+  for (Setting& setting : more) setting.group = group;
+  std::move(more.begin(), more.end(), std::back_inserter(settings));
+}
+
+Settings all_settings() {
+  Settings settings;
+  append(settings, "hit", hit_settings());
+  append(settings, "body", body_settings());
+  append(settings, "start", start_settings());
+  append(settings, "behaviour", behaviour_settings_table());
+  append(settings, "method", method_settings());
+  append(settings, "clip", clip_settings());
+  append(settings, "out", out_settings());
+  return settings;
+}
+
+}  // namespace
+
+const std::vector<HumanoidSetting>& humanoid_settings() {
+  static const std::vector<HumanoidSetting> settings = {map_setting(), unit_setting(), up_setting(),
+                                                        height_setting()};
+  return settings;
+}
+
+const std::vector<Setting>& bake_settings() {
+  static const std::vector<Setting> settings = all_settings();
+  return settings;
+}
+
+Result<const Setting*> find_setting(std::string_view name) {
+  std::vector<std::string> names;
+  for (const Setting& setting : bake_settings()) {
+    if (setting.name == name) return &setting;
+    names.emplace_back(setting.name);
+  }
+  return usage_error(fmt::format("unknown setting '{}'", name), suggestion(name, names));
+}
+
+Status check_values(const BakeSettings& settings) {
+  BakeSettings copy;
+  for (const Setting& setting : bake_settings()) {
+    for (const std::string& value : setting.get(settings)) {
+      const Status status = setting.set(copy, value);
+      if (status) continue;
+      Error error = status.error();
+      error.what = fmt::format("{}: {}", setting.name, error.what);
+      return error;
+    }
+  }
+  return Done{};
+}
+
+}  // namespace ukemi

@@ -1,0 +1,41 @@
+#include "humanoid/humanoid.h"
+
+#include "humanoid/assemble.h"
+#include "humanoid/bones.h"
+#include "humanoid/frames.h"
+#include "humanoid/twist.h"
+
+namespace ukemi {
+
+namespace {
+
+Result<Humanoid> humanoid_of(const Character& character, const Bones& bones, const HumanoidOptions& options,
+                             Diagnostics& diagnostics) {
+  Humanoid humanoid;
+  assemble(character, bones, humanoid);
+  if (Status status = find_frames(character, options, humanoid, diagnostics); !status) return status.error();
+  humanoid.twist_bones = find_twist_bones(character.skeleton, humanoid);
+  return humanoid;
+}
+
+}  // namespace
+
+Result<Humanoid> map_humanoid(const Character& character, const HumanoidOptions& options,
+                              Diagnostics& diagnostics) {
+  const Result<Bones> bones = find_bones(character, options);
+  if (!bones) return bones.error();
+  auto humanoid = humanoid_of(character, *bones, options, diagnostics);
+  if (humanoid) return humanoid;
+  // Names that make no human, on what may have the shape of one.
+  const auto shape = find_bones_by_shape(character, options);
+  if (!shape) return humanoid;
+  auto shaped = humanoid_of(character, *shape, options, diagnostics);
+  if (!shaped) return humanoid;
+  diagnostics.warn(
+      character.path.string(),
+      "the names of the bones do not fit their places; the bones are taken by their shape: --map "
+      "sets them");
+  return shaped;
+}
+
+}  // namespace ukemi
