@@ -148,7 +148,7 @@ Result<Picture> render_sheet(const Shot& shot, const SheetOptions& options) {
   const Layout layout(pen, options, static_cast<int>(moments.size()));
   const Heading heading = heading_of(shot);
   const int top = heading_height(pen, heading, layout.room());
-  const Timeline timeline{mean_speeds(*shot.clip, studio->joints), shot.clip->fps, moments};
+  const SpeedCurve timeline{mean_speeds(*shot.clip, studio->joints), shot.clip->fps, moments};
   const int height = layout.height(top, timeline.speeds.size() > 1);
   if (std::max(layout.width(), height) > kLongestPageSide)
     return usage_error(fmt::format("a sheet of {} x {} pixels is too large", layout.width(), height),

@@ -38,7 +38,7 @@ std::vector<PlacedFact> place_facts(const Pen& pen, const std::vector<Fact>& fac
   return placed;
 }
 
-double time_of(const Timeline& timeline) {
+double time_of(const SpeedCurve& timeline) {
   return static_cast<double>(timeline.speeds.size() - 1) / timeline.fps;
 }
 
@@ -47,7 +47,7 @@ double time_step(double duration_s, int width, double label_px) {
   return std::max(tick_step(duration_s, std::max(1, static_cast<int>(width / label_px))), 0.1);
 }
 
-void draw_curve(Picture& page, const Pen& pen, const Timeline& timeline, const Box& box) {
+void draw_curve(Picture& page, const Pen& pen, const SpeedCurve& timeline, const Box& box) {
   const double peak = *std::max_element(timeline.speeds.begin(), timeline.speeds.end());
   if (!(peak > 0.0)) return;
   const double last = static_cast<double>(timeline.speeds.size() - 1);
@@ -130,7 +130,7 @@ void draw_label(Picture& page, const Pen& pen, const Box& cell, const std::strin
 
 int timeline_height(const Pen& pen) { return pen.scaled(82); }
 
-void draw_timeline(Picture& page, const Pen& pen, const Timeline& timeline, const Box& box) {
+void draw_timeline(Picture& page, const Pen& pen, const SpeedCurve& timeline, const Box& box) {
   if (timeline.speeds.size() < 2) return;
   const double duration = time_of(timeline);
   const int base = box.y + box.height - pen.scaled(26);

@@ -38,7 +38,7 @@ void draw_label(Picture& page, const Pen& pen, const Box& cell, const std::strin
 int label_height(const Pen& pen);
 
 /// Speed of a motion over time.
-struct Timeline {
+struct SpeedCurve {
   std::vector<double> speeds;  // m/s, per frame
   double fps = 60.0;
   std::vector<Moment> moments;
@@ -46,7 +46,7 @@ struct Timeline {
 
 int timeline_height(const Pen& pen);
 /// The curve, below it a dot for every cell and the seconds.
-void draw_timeline(Picture& page, const Pen& pen, const Timeline& timeline, const Box& box);
+void draw_timeline(Picture& page, const Pen& pen, const SpeedCurve& timeline, const Box& box);
 
 /// A bar as long as a metre (or a part or a multiple of it) at the stage's focus, and what is said beside it.
 /// Returns the x after it.

@@ -1,5 +1,7 @@
 #include "bake/sheet.h"
 
+#include "bake/bake.h"
+
 #include <gtest/gtest.h>
 
 #include "load/character_path.h"

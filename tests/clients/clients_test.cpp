@@ -50,10 +50,10 @@ constexpr std::array kForOptions{"basic_armature.vrm", "basic_armature_vrm1.vrm"
 constexpr std::array<std::pair<const char*, void (*)(BakeSettings&)>, 11> kOptions{{
     {"default", [](BakeSettings&) {}},
     {"clip-only", [](BakeSettings& s) { s.clip_only = true; }},
-    {"align", [](BakeSettings& s) { s.align = true; }},
+    {"align", [](BakeSettings& s) { s.ground.align = true; }},
     {"extra-bones_clip", [](BakeSettings& s) { s.extra_bones_play = true; }},
-    {"root-motion_root", [](BakeSettings& s) { s.root_motion = RootMotion::root; }},
-    {"root-motion_in-place", [](BakeSettings& s) { s.root_motion = RootMotion::in_place; }},
+    {"root-motion_root", [](BakeSettings& s) { s.ground.root_motion = RootMotion::root; }},
+    {"root-motion_in-place", [](BakeSettings& s) { s.ground.root_motion = RootMotion::in_place; }},
     {"additive", [](BakeSettings& s) { s.additive = true; }},
     {"rotation-type_int16", [](BakeSettings& s) { s.keys.short_rotations = true; }},
     {"recover", [](BakeSettings& s) { s.recover_s = 0.3; }},

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <regex>
+#include <set>
 #include <string_view>
 
 namespace ukemi {
@@ -20,6 +21,9 @@ constexpr std::string_view kRooms[] = {"base",     "load",   "humanoid", "restri
 // Rooms that never include each other.
 const std::vector<std::vector<std::string_view>> kApart = {{"export", "render"},
                                                            {"check", "study", "batch", "review"}};
+
+constexpr long kMostLines = 3600;  // of a room
+constexpr std::string_view kLongRoom = "render";
 
 struct ThirdParty {
   std::string_view prefix;              // of the header's name
@@ -155,6 +159,59 @@ std::optional<std::string> violation(const fs::path& source, const std::string& 
   return std::nullopt;
 }
 
+using Modules = std::map<std::string, std::set<std::string>>;  // a module and those that it includes
+
+std::string module_of(const fs::path& file) { return fs::path(file).replace_extension().generic_string(); }
+
+/// The way from `module` along includes back to itself, through modules that come after it by name; empty
+/// where there is none.
+std::vector<std::string> cycle_from(const Modules& modules, const std::string& module) {
+  std::map<std::string, std::string> reached_from;
+  std::vector<std::string> open{module};
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const auto found = modules.find(open[i]);
+    if (found == modules.end()) continue;
+    for (const std::string& next : found->second) {
+      if (next < module || reached_from.count(next) > 0) continue;
+      reached_from[next] = open[i];
+      if (next != module) open.push_back(next);
+    }
+  }
+  std::vector<std::string> way;
+  if (reached_from.count(module) == 0) return way;
+  for (std::string at = reached_from[module]; at != module; at = reached_from[at]) way.push_back(at);
+  std::reverse(way.begin(), way.end());
+  return way;
+}
+
+/// Each cycle is told once, at the module that comes first by name.
+void check_cycles(const Modules& modules, LayeringReport& report) {
+  std::set<std::string> told;
+  for (const auto& [module, includes] : modules) {
+    const std::vector<std::string> way = cycle_from(modules, module);
+    if (way.empty() || told.count(module) > 0) continue;
+    std::string text = module + ": includes itself by way of";
+    for (const std::string& at : way) text += " " + at;
+    report.violations.push_back(text);
+    told.insert(way.begin(), way.end());
+  }
+}
+
+void check_lengths(const std::map<std::string, long>& lines, LayeringReport& report) {
+  for (const auto& [room, count] : lines)
+    if (count > kMostLines && room != kLongRoom)
+      report.violations.push_back(room + ": " + std::to_string(count) + " lines are more than " +
+                                  std::to_string(kMostLines));
+}
+
+long lines_of(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string text;
+  long lines = 0;
+  while (std::getline(stream, text)) ++lines;
+  return lines;
+}
+
 void check_file(const fs::path& source, const fs::path& file, LayeringReport& report) {
   const fs::path relative = fs::relative(file, source);
   const std::string extension = file.extension().string();
@@ -185,11 +242,21 @@ LayeringReport check_layering(const fs::path& source) {
   std::sort(files.begin(), files.end());
   LayeringReport report;
   TypesByName types;
+  Modules modules;
+  std::map<std::string, long> lines;
   for (const fs::path& file : files) {
     check_file(source, file, report);
+    if (file.extension() != ".h" && file.extension() != ".cpp") continue;
     find_types(source, file, types);
+    const fs::path relative = fs::relative(file, source);
+    lines[relative.begin()->string()] += lines_of(file);
+    for (const Include& include : includes_of(file))
+      if (include.quoted && module_of(include.name) != module_of(relative))
+        modules[module_of(relative)].insert(module_of(include.name));
   }
   check_types(types, report);
+  check_cycles(modules, report);
+  check_lengths(lines, report);
   return report;
 }
 

@@ -24,6 +24,8 @@ struct LayeringReport {
 /// 4. Every folder is a known room and every source file is a .h or a .cpp.
 /// 5. A type that is defined outside an unnamed namespace has a name that no other type has (the one
 /// definition rule; a compiler sees one file at a time and says nothing).
+/// 6. No include cycle between modules, inside a room neither. A module is a .h and a .cpp of the same name.
+/// 7. No room but render is longer than 3,600 lines.
 LayeringReport check_layering(const std::filesystem::path& source);
 
 }  // namespace ukemi

@@ -48,9 +48,10 @@ TEST(Layering, ReportsALaterRoomByFileAndLine) {
 
 TEST(Layering, KeepsExportAndRenderApart) {
   const Tree tree;
-  tree.add("export/export.h", "#include \"render/render.h\"\n");
+  tree.add("export/export.h", "");
+  tree.add("export/write.cpp", "#include \"render/render.h\"\n");
   tree.add("render/render.h", "#include \"export/export.h\"\n");
-  EXPECT_EQ(tree.violations(), (Strings{"export/export.h:1: export must not include render/render.h",
+  EXPECT_EQ(tree.violations(), (Strings{"export/write.cpp:1: export must not include render/render.h",
                                         "render/render.h:1: render must not include export/export.h"}));
 }
 
@@ -113,6 +114,24 @@ TEST(Layering, LetsFilesHaveTypesOfTheirOwnWithTheSameName) {
     tree.add(file, "namespace ukemi {\nnamespace {\nstruct Key {};\n}  // namespace\n}\nstruct Other;\n");
   EXPECT_EQ(tree.violations(), Strings{});
   EXPECT_EQ(tree.check().types, 2);
+}
+
+TEST(Layering, ReportsAnIncludeCycleBetweenModulesOfARoom) {
+  const Tree tree;
+  tree.add("body/body.h", "");
+  tree.add("body/body.cpp", "#include \"body/body.h\"\n#include \"body/shapes.h\"\n");
+  tree.add("body/shapes.h", "#include \"body/table.h\"\n");
+  tree.add("body/table.h", "#include \"body/body.h\"\n");
+  tree.add("body/mass.cpp", "#include \"body/body.h\"\n");
+  EXPECT_EQ(tree.violations(), (Strings{"body/body: includes itself by way of body/shapes body/table"}));
+}
+
+TEST(Layering, ReportsARoomThatIsTooLongButNotTheRenderer) {
+  const Tree tree;
+  const std::string lines(2000, '\n');
+  for (const char* file : {"load/a.h", "load/b.cpp", "render/a.h", "render/b.cpp", "bake/a.cpp"})
+    tree.add(file, lines);
+  EXPECT_EQ(tree.violations(), (Strings{"load: 4000 lines are more than 3600"}));
 }
 
 TEST(Layering, CountsTheFilesAndIncludesItLookedAt) {
