@@ -260,7 +260,8 @@ Result<BakedClip> bake(const Character& character, const BakeSettings& settings,
   outcome.figures = std::move(simulation->figures);
   outcome.behaviour = std::move(simulation->behaviour);
   Trajectory& trajectory = simulation->trajectory;
-  if (settings.until_rest) trim_still_tail(trajectory, outcome.figures.rest_time_s, settings.hold_s);
+  const bool blow = outcome.prepared.scene.kind != SceneKind::none;
+  if (settings.until_rest && blow) trim_still_tail(trajectory, outcome.figures.rest_time_s, settings.hold_s);
   if (outcome.prepared.behaviour.kind != Behaviour::limp)
     end_in_start_pose(outcome.prepared.start.state.segments, outcome.behaviour, trajectory);
   outcome.timings_s.simulate = watch.lap();

@@ -17,7 +17,7 @@ namespace ukemi {
 namespace {
 
 constexpr std::int64_t kPresetFormat = 1;
-const std::vector<std::string> kSceneNames = {"ball", "slope", "fall", "push", "impulse", "box"};
+const std::vector<std::string> kSceneNames = {"ball", "slope", "fall", "push", "impulse", "box", "none"};
 
 Error preset_error(const std::string& file, const toml::source_region& where, std::string what,
                    std::string fix) {
@@ -221,7 +221,7 @@ Status check_preset(const std::string& text) {
 
 std::optional<std::string> preset_in_use(const BakeSettings& settings) {
   const bool own_ball = settings.ball_mass_kg && settings.ball_speed_m_s && settings.ball_radius_m;
-  if (own_ball || settings.scene == SceneKind::fall) return std::nullopt;
+  if (own_ball || settings.scene == SceneKind::fall || settings.scene == SceneKind::none) return std::nullopt;
   return settings.preset;
 }
 

@@ -5,6 +5,7 @@
 #include "bake/impact.h"
 #include "bake/start.h"
 #include "base/errors.h"
+#include "behave/ground.h"
 #include "humanoid/rotations.h"
 
 namespace ukemi {
@@ -28,6 +29,57 @@ void widen_for_start(Prepared& prepared, Diagnostics& diagnostics) {
                       "degrees for this bake",
                       degrees(outside), degrees(widened)));
   }
+}
+
+constexpr double kUnderWay_m_s = 0.3;  // speed of the pelvis from which a body is under way
+constexpr double kOffFloor_m = 0.025;
+
+double pelvis_speed(const StartState& state) { return state.linear_velocity[index(Segment::pelvis)].norm(); }
+
+/// Height of the lower end of a foot above where it would stand, m.
+double foot_height(const BodyPose& home, const BodyPose& pose, Segment foot) {
+  return pose[index(foot)].translation.y() - home[index(foot)].translation.y();
+}
+
+/// When each foot of a motion that is in the air at the start comes down, s from then.
+UnderWay under_way_of(const Character& character, const Prepared& prepared) {
+  constexpr double kStep_s = 1.0 / 120.0;
+  constexpr double kLookAhead_s = 0.6;
+  UnderWay under_way;
+  for (int i = 1; i * kStep_s <= kLookAhead_s; ++i) {
+    const Pose pose = unhit_pose(character.skeleton, prepared.humanoid, prepared.start, i * kStep_s);
+    BodyPose segments = canonical_segments_of(character.skeleton, prepared.humanoid, pose);
+    for (Rigid& segment : segments) segment.translation.y() -= prepared.start.floor_m;
+    for (const BodySide side : kSides) {
+      const Segment foot = side == BodySide::left ? Segment::foot_l : Segment::foot_r;
+      auto& lands = under_way.lands_in_s[static_cast<int>(side)];
+      if (!lands && foot_height(prepared.home, segments, foot) < kOffFloor_m) lands = i * kStep_s;
+    }
+  }
+  return under_way;
+}
+
+/// A still start is its own home. A body under way comes to stand as the stand pose does, facing as it does
+/// then.
+void find_home(const Character& character, const BakeSettings& settings, Prepared& prepared) {
+  const BodyPose& start = prepared.start.state.segments;
+  prepared.home = start;
+  if (!prepared.start.from_clip || prepared.behaviour.kind == Behaviour::limp) return;
+  const Pose pose = start_pose(character, prepared.humanoid, StartPose::stand,
+                               {true, static_cast<std::uint64_t>(settings.seed)});
+  BodyPose stand = canonical_segments_of(character.skeleton, prepared.humanoid, pose);
+  const bool still = pelvis_speed(prepared.start.state) < kUnderWay_m_s &&
+                     foot_height(stand, start, Segment::foot_l) < kOffFloor_m &&
+                     foot_height(stand, start, Segment::foot_r) < kOffFloor_m;
+  if (still) return;
+  const double turn = yaw_of(start[0].rotation * Vec3::UnitX()) - yaw_of(stand[0].rotation * Vec3::UnitX());
+  const Quat turned(Eigen::AngleAxisd(turn, Vec3::UnitY()));
+  const Vec3 from = at_height(on_ground(stand[0].translation), 0.0);
+  const Vec3 to = at_height(on_ground(start[0].translation), 0.0);
+  for (Rigid& segment : stand)
+    segment = {turned * segment.rotation, to + turned * (segment.translation - from)};
+  prepared.home = stand;
+  prepared.behaviour.under_way = under_way_of(character, prepared);
 }
 
 }  // namespace
@@ -59,6 +111,7 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
   if (!strength) return strength.error();
   prepared.strength = *strength;
   prepared.behaviour = behaviour_settings(settings);
+  find_home(character, settings, prepared);
   auto scene = scene_of(settings, prepared.start.segments[index(Segment::pelvis)].rotation);
   if (!scene) return scene.error();
   prepared.scene = *scene;
@@ -74,7 +127,7 @@ SimulationInput simulation_input(const Prepared& prepared, const Scene& scene,
           prepared.start.state,
           scene,
           settings,
-          behaviour_of(prepared.body, prepared.start.state.segments, scene, prepared.behaviour, settings)};
+          behaviour_of(prepared.body, prepared.home, scene, prepared.behaviour, settings)};
 }
 
 }  // namespace ukemi

@@ -32,6 +32,8 @@ struct Prepared {
   ActiveThresholds thresholds;  // of the active restriction
   MuscleStrength strength;
   BehaviourSettings behaviour;
+  BodyPose
+      home;  // what a body that keeps its feet comes back to: the start pose, or its stance after a motion
 
   Actor actor(const Character& character) const { return {character, humanoid, start, body}; }
 };

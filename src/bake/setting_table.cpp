@@ -275,12 +275,13 @@ Settings hit_settings() {
       number<S>(
           "aim-left", "M", Range{-5.0, 5.0}, "ball, box: so far to the left, seen from where it comes from",
           [](auto& s) -> auto& { return s.aim_left_m; }),
-      with_unset(parsed<S>(
-                     "scene", "ball|slope|fall|push|impulse|box",
-                     "what happens: a ball flies in, a ball rolls down a ramp, the body is tipped over or "
-                     "dropped, a force acts for a time, momentum is given at once, a box slides in",
-                     [](auto& s) -> auto& { return s.scene; }, parse_scene),
-                 "the preset's"),
+      with_unset(
+          parsed<S>(
+              "scene", "ball|slope|fall|push|impulse|box|none",
+              "what happens: a ball flies in, a ball rolls down a ramp, the body is tipped over or "
+              "dropped, a force acts for a time, momentum is given at once, a box slides in, nothing happens",
+              [](auto& s) -> auto& { return s.scene; }, parse_scene),
+          "the preset's"),
       number<S>(
           "slope-deg", "DEG", Range{1.0, 60.0}, "slope: of the ramp",
           [](auto& s) -> auto& { return s.slope_deg; }),

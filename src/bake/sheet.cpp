@@ -40,6 +40,8 @@ std::string blow_text(const BakeSettings& settings, const Scene& scene) {
     case SceneKind::slope:
       return fmt::format("{} down a ramp of {:.0f} degrees: {} kg at {} m/s", what, degrees(scene.slope_rad),
                          scene.ball_mass_kg, scene.ball_speed_m_s);
+    case SceneKind::none:
+      return "none";
     case SceneKind::box:
       return fmt::format("box of {} m: {} kg at {} m/s", 2.0 * scene.ball_radius_m, scene.ball_mass_kg,
                          scene.ball_speed_m_s);
@@ -47,6 +49,13 @@ std::string blow_text(const BakeSettings& settings, const Scene& scene) {
       break;
   }
   return fmt::format("{}: {} kg at {} m/s", what, scene.ball_mass_kg, scene.ball_speed_m_s);
+}
+
+std::string title_of(const Character& character, const BakeSettings& settings, const Scene& scene) {
+  if (scene.kind == SceneKind::fall)
+    return fmt::format("{}: falls away from {}", character.name, settings.from.text);
+  if (scene.kind == SceneKind::none) return fmt::format("{}: unhit", character.name);
+  return fmt::format("{}: {} hit from {}", character.name, name(scene.target), settings.from.text);
 }
 
 std::vector<Fact> facts_of(const BakeSettings& settings, const BakedClip& outcome) {
@@ -195,10 +204,7 @@ Shot shot_of(const Character& character, const BakeSettings& settings, const Bak
   shot.props = &trajectory.props;
   shot.impact_point = trajectory.impact_point;
   shot.impact_direction = trajectory.impact_direction;
-  shot.title = outcome.prepared.scene.kind == SceneKind::fall
-                   ? fmt::format("{}: falls away from {}", character.name, settings.from.text)
-                   : fmt::format("{}: {} hit from {}", character.name, name(outcome.prepared.scene.target),
-                                 settings.from.text);
+  shot.title = title_of(character, settings, outcome.prepared.scene);
   shot.facts = facts_of(settings, outcome);
   return shot;
 }

@@ -26,6 +26,7 @@ double momentum_of(const Scene& scene) {
     case SceneKind::impulse:
       return scene.impulse_n_s;
     case SceneKind::fall:
+    case SceneKind::none:
       break;
   }
   return 0.0;
@@ -57,7 +58,9 @@ StandSettings stand_settings(const ArticulatedBody& body, const Scene& scene,
   stand.latency_s = asked.latency_s.value_or(dazed ? kDazedLatency_s : kLatency_s);
   stand.strength = dazed ? kDazedStrength : 1.0;
   stand.arms_free = asked.arms_free;
-  stand.flinch.way = scene.direction;
+  stand.under_way = asked.under_way;
+  const bool blow = scene.kind != SceneKind::none && scene.kind != SceneKind::fall;
+  if (blow) stand.flinch.way = scene.direction;
   if (asked.seed != 0) vary(stand, asked.seed);
   stand.flinch.size = std::min(1.0, momentum_of(scene) / body.mass_kg / kFullFlinch_m_s);
   return stand;

@@ -20,6 +20,7 @@ struct BehaviourSettings {
   double muscle = 1.0;              // strength, of a healthy adult's
   std::uint64_t seed = 0;           // varies latency, arms and steps; 0: none
   PerSide<bool> arms_free{true, true};
+  std::optional<UnderWay> under_way;  // a start from motion
 };
 
 /// The behaviour of a body that stands in `home` when the blow of `scene` comes. `home` and `body` must

@@ -89,6 +89,7 @@ Standing::Standing(const ArticulatedBody& body, const BodyPose& home, double gra
 }
 
 double Standing::active(double time_s) const {
+  if (under_way_) return 1.0;  // its gait is in control already
   return std::clamp((time_s - s(settings_.latency_s)) / s(kReaction_s), 0.0, 1.0);
 }
 
@@ -150,7 +151,55 @@ Standing::View Standing::view_of(const Senses& senses) const {
 
 void Standing::start(const Senses& senses) {
   start_com_ = on_ground(senses.com);
+  if (settings_.under_way) take_over(senses);
   ask(senses, view_of(senses));
+}
+
+Vec3 Standing::ankle_velocity(const Senses& senses, const Leg& leg) const {
+  const int foot = ukemi::index(leg.foot);
+  return senses.velocity[foot] +
+         senses.angular_velocity[foot].cross(senses.pose[foot].translation - senses.centre[foot]);
+}
+
+/// Every corner of the sole moves, or the lowest is well above the ground.
+bool Standing::in_air(const Senses& senses, const Leg& leg) const {
+  if (leg.lowest_corner(senses) > m(0.025)) return true;
+  const int foot = ukemi::index(leg.foot);
+  return std::all_of(leg.sole.begin(), leg.sole.end(), [&](const Vec3& corner) {
+    const Vec3 at = senses.pose[foot] * corner;
+    const Vec3 velocity =
+        senses.velocity[foot] + senses.angular_velocity[foot].cross(at - senses.centre[foot]);
+    return velocity.norm() > m_s(0.6);
+  });
+}
+
+/// The start of a body under way: a foot in the air goes on with its step.
+void Standing::take_over(const Senses& senses) {
+  under_way_ = senses.pose;
+  std::optional<BodySide> first;
+  for (const BodySide side : kSides) {
+    if (!in_air(senses, leg(side))) continue;
+    const auto lands = settings_.under_way->lands_in_s[ukemi::index(side)];
+    const auto sooner = [&] { return *lands < *settings_.under_way->lands_in_s[ukemi::index(*first)]; };
+    if (!first || (lands && settings_.under_way->lands_in_s[ukemi::index(*first)] && sooner())) first = side;
+  }
+  if (!first) return;
+  const View view = view_of(senses);
+  lift(senses, view, *first, false);
+  swing_.in_air = true;
+  swing_.from_velocity = ankle_velocity(senses, leg(*first));
+  const auto lands = settings_.under_way->lands_in_s[ukemi::index(*first)];
+  swing_.span_s = std::clamp(lands.value_or(s(0.25)), s(0.12), s(0.45));
+  swing_.to = landing_place(view_of(senses), *first, swing_.span_s);
+}
+
+/// A goal that begins as the motion under way had the joint.
+Quat Standing::taken_over(const Senses& senses, Joint joint, const Quat& goal, double from_s,
+                          double until_s) const {
+  if (!under_way_) return goal;
+  const Quat was = (*under_way_)[ukemi::index(parent_of(joint))].rotation.conjugate() *
+                   (*under_way_)[ukemi::index(child_of(joint))].rotation;
+  return was.slerp(min_jerk((senses.time_s - s(from_s)) / s(until_s - from_s)), goal);
 }
 
 void Standing::observe(const Senses& senses, double h) {
@@ -185,7 +234,7 @@ void Standing::choose(const Senses& senses, const View& view, double h) {
 }
 
 double Standing::earliest_lift_s() const {
-  return std::max({s(settings_.lift_s), landed_s_[0] + 0.01, landed_s_[1] + 0.01});
+  return std::max({under_way_ ? 0.0 : s(settings_.lift_s), landed_s_[0] + 0.01, landed_s_[1] + 0.01});
 }
 
 bool Standing::must_step(const View& view, double time_s) const {
@@ -502,7 +551,12 @@ Vec3 Standing::swing_ankle(double time_s) const {
   const double bump = phase < 0.55 ? min_jerk(phase / 0.55) : 1.0 - min_jerk((phase - 0.55) / 0.45);
   const double most = swing_.closing ? 0.05 : 0.09;
   Vec3 at = swing_.from + along * (target - swing_.from);
-  at.y() += m(most) * bump - m_s(0.5) * std::max(0.0, time_s - swing_.lift_s - swing_.span_s);
+  const double duration = 0.85 * swing_.span_s;
+  const double u = std::clamp(phase / 0.85, 0.0, 1.0);
+  at += duration * u * (1.0 + u * u * (-6.0 + u * (8.0 - 3.0 * u))) * swing_.from_velocity;
+  at.y() +=
+      m(most) * bump * std::clamp((m(0.09) - swing_.from.y() + leg_in_air.home_ankle_m) / m(0.09), 0.0, 1.0) -
+      m_s(0.5) * std::max(0.0, time_s - swing_.lift_s - swing_.span_s);
   return at;
 }
 
@@ -561,7 +615,8 @@ void Standing::ask_standing_leg(const Senses& senses, const View& view, const Wr
     const Quat home =
         home_[ukemi::index(chain[k])].rotation.conjugate() * home_[ukemi::index(chain[k + 1])].rotation;
     const Vec3 omega = b * (parent * log_rotation(later * relative.conjugate())) / kAhead_s;
-    ask_joint(joints[k], home.slerp(b, relative), omega, carried, share[k], s(kDamping_s));
+    ask_joint(joints[k], taken_over(senses, joints[k], home.slerp(b, relative), 0.0, 0.15), omega, carried,
+              share[k], s(kDamping_s));
   }
 }
 
@@ -597,8 +652,8 @@ void Standing::ask_upper_body(const Senses& senses) {
     if (arm && !settings_.arms_free[ukemi::index(side)]) turn = Vec3::Zero();
     const Quat home = home_[ukemi::index(parent_of(joint))].rotation.conjugate() *
                       home_[ukemi::index(child_of(joint))].rotation;
-    ask_joint(joint, exp_rotation(turn) * home, Vec3::Zero(), -physique_.weight_torque(senses, joint),
-              arm ? 0.35 : 0.5, s(kDamping_s));
+    ask_joint(joint, taken_over(senses, joint, exp_rotation(turn) * home, 0.1, 0.5), Vec3::Zero(),
+              -physique_.weight_torque(senses, joint), arm ? 0.35 : 0.5, s(kDamping_s));
   }
 }
 

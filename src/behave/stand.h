@@ -16,15 +16,22 @@
 
 namespace ukemi {
 
+/// A body that is under way when the blow comes: what it does already is taken over.
+struct UnderWay {
+  /// When a foot that is in the air would land, s from the blow.
+  PerSide<std::optional<double>> lands_in_s;
+};
+
 struct StandSettings {
-  int most_steps = 6;        // of a recovery; 0: the feet stay where they are
-  double latency_s = 0.10;   // after the blow nothing but passive body and tone acts
-  double lift_s = 0.16;      // earliest moment that a foot leaves the ground
-  double foot_bias_m = 0.0;  // cost of stepping with the left foot
-  double step_scale = 1.0;   // of the way to the capture point
-  double swing_s = 0.307;    // of an unhurried step
-  double narrow_m = 0.40;    // a step aside while going forward is at most so wide
-  double strength = 1.0;     // of the drives; a dazed body has less
+  std::optional<UnderWay> under_way;  // nothing: the body stands in its home pose
+  int most_steps = 6;                 // of a recovery; 0: the feet stay where they are
+  double latency_s = 0.10;            // after the blow nothing but passive body and tone acts
+  double lift_s = 0.16;               // earliest moment that a foot leaves the ground
+  double foot_bias_m = 0.0;           // cost of stepping with the left foot
+  double step_scale = 1.0;            // of the way to the capture point
+  double swing_s = 0.307;             // of an unhurried step
+  double narrow_m = 0.40;             // a step aside while going forward is at most so wide
+  double strength = 1.0;              // of the drives; a dazed body has less
   std::optional<BodySide> first_foot;
   PerSide<bool> arms_free{true, true};
   PerSide<double> arm_size{1.1, 0.9};  // of catching arms
@@ -57,6 +64,7 @@ class Standing {
     bool closing = false;
     bool in_air = false;       // the foot has left the ground
     Vec3 from = Vec3::Zero();  // ankle at the lift
+    Vec3 from_velocity = Vec3::Zero();
     Quat from_foot = Quat::Identity();
     Vec2 from_sole = Vec2::Zero();
     Vec2 to = Vec2::Zero();  // sole
@@ -103,12 +111,17 @@ class Standing {
   void ask_joint(Joint joint, const Quat& goal, const Vec3& velocity, const Vec3& feed_forward,
                  double stiffness, double damping_s);
   double active(double time_s) const;
+  void take_over(const Senses& senses);
+  Vec3 ankle_velocity(const Senses& senses, const Leg& leg) const;
+  bool in_air(const Senses& senses, const Leg& leg) const;
+  Quat taken_over(const Senses& senses, Joint joint, const Quat& goal, double from_s, double until_s) const;
   void update_slow_state(const Senses& senses, const View& view, double h);
 
   StandSettings settings_;
   Physique physique_;
   PerSide<Leg> legs_;
   BodyPose home_;
+  std::optional<BodyPose> under_way_;  // pose at the start of a body under way
   Flinch flinch_;
   PerSide<Vec2> home_sole_;
   Vec2 home_com_ = Vec2::Zero();  // from the middle of the soles

@@ -6,7 +6,7 @@
 
 namespace ukemi {
 
-enum class SceneKind { ball, slope, fall, push, impulse, box };
+enum class SceneKind { ball, slope, fall, push, impulse, box, none };
 
 /// The blow. Distances in metres, directions in the world.
 struct Scene {

@@ -54,6 +54,8 @@ void SceneProps::begin(Diagnostics& diagnostics) {
       return begin_impulse();
     case SceneKind::fall:
       return begin_fall();
+    case SceneKind::none:
+      return;
     case SceneKind::push:
       momentum_ = scene_.push_force_n * scene_.push_duration_s;
   }

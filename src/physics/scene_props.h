@@ -25,6 +25,7 @@ class SceneProps {
   double work(double time_s, double h) const;
   /// Kinetic and potential energy of the props, J.
   double prop_energy() const;
+  bool is_blow() const { return scene_.kind != SceneKind::none; }
   double momentum_n_s() const { return momentum_; }
   /// What the body has received until `time_s`: what the missile has lost along the blow's way, N s.
   double delivered_n_s(double time_s) const;

@@ -171,7 +171,7 @@ void Simulation::run(Diagnostics& diagnostics) {
   contacts_ = physics_.find_contacts();
   frames_.emplace(settings_.fps, settings_.duration_s, stepping_.tick_s, scene.props(), state());
   frames_->trajectory.impact_point = scene.impact_point();
-  frames_->trajectory.impact_direction = direction_;
+  if (scene.is_blow()) frames_->trajectory.impact_direction = direction_;
   most_energy_j_ += kBlowShare * std::abs(scene.prop_energy());
   recorder_.step(0.0, 0.0, contacts_, scene.prop_energy(), 0.0, 0.0);
   const Senses senses = physics_.senses(0.0, contacts_);
