@@ -1,0 +1,114 @@
+// Muscles: caps by human strength that hold for the sum of all that is asked, growth in human time.
+#include <gtest/gtest.h>
+
+#include "body/muscles.h"
+#include "physics/physics.h"
+#include "simulate/standing_man.h"
+
+namespace ukemi {
+namespace {
+
+constexpr double kStep_s = 1.0 / 240.0;
+
+MuscleStrength strength_of(const ArticulatedBody& body, Sex sex, double share) {
+  const auto strength = muscle_strength(body, sex, share);
+  EXPECT_TRUE(strength) << strength.error().message();
+  return strength ? *strength : MuscleStrength{};
+}
+
+Physics physics_of(const test::StandingMan& man, const MuscleStrength& strength) {
+  Scene scene;
+  scene.kind = SceneKind::none;
+  scene.direction = Vec3::UnitX();
+  PhysicsSettings settings;
+  settings.gravity = 0.0;
+  return Physics(man.body, man.range, *load_active_thresholds(""), strength, man.start(), scene, settings);
+}
+
+JointGoal pull(double n_m) {
+  JointGoal goal;
+  goal.feed_forward_n_m = Vec3(0.0, 0.0, n_m);
+  goal.least_n_m.setConstant(-1e6);
+  goal.most_n_m.setConstant(1e6);
+  return goal;
+}
+
+/// Share of the hip's strength after some steps of the same goals.
+double share_after(const std::vector<JointGoal>& goals, int steps) {
+  const test::StandingMan man;
+  Physics physics = physics_of(man, strength_of(man.body, Sex::male, 1.0));
+  Goals asked;
+  asked.joints[index(Joint::hip_r)] = {pull(0.0)};
+  for (int i = 0; i < steps; ++i) {
+    physics.save();
+    physics.step(i * kStep_s, kStep_s, asked, physics.find_contacts());
+    physics.accept(i * kStep_s, kStep_s);
+    asked.joints[index(Joint::hip_r)] = goals;
+  }
+  return physics.muscle_share();
+}
+
+TEST(Muscles, OfABodyGrowWithItsMassHeightAndShare) {
+  test::StandingMan man;
+  const int knee = index(Joint::knee_r);
+  const double plain = strength_of(man.body, Sex::male, 1.0)[knee].most_n_m.z();
+  EXPECT_GT(plain, 200.0);
+  EXPECT_LT(plain, 400.0);
+  EXPECT_NEAR(strength_of(man.body, Sex::male, 0.5)[knee].most_n_m.z(), 0.5 * plain, 1e-9);
+  EXPECT_LT(strength_of(man.body, Sex::female, 1.0)[knee].most_n_m.z(), 0.9 * plain);
+  man.body.mass_kg *= 2.0;
+  EXPECT_NEAR(strength_of(man.body, Sex::male, 1.0)[knee].most_n_m.z(), 2.0 * plain, 1e-9);
+}
+
+TEST(Muscles, OfTheLeftMirrorThoseOfTheRight) {
+  const test::StandingMan man;
+  const MuscleStrength strength = strength_of(man.body, Sex::male, 1.0);
+  const JointStrength& left = strength[index(Joint::hip_l)];
+  const JointStrength& right = strength[index(Joint::hip_r)];
+  EXPECT_DOUBLE_EQ(left.most_n_m.x(), -right.least_n_m.x());
+  EXPECT_DOUBLE_EQ(left.least_n_m.y(), -right.most_n_m.y());
+  EXPECT_DOUBLE_EQ(left.most_n_m.z(), right.most_n_m.z());
+  EXPECT_NE(right.most_n_m.x(), -right.least_n_m.x());
+}
+
+TEST(Muscles, GiveNoMoreThanTheirStrengthForTheSumOfAllGoals) {
+  EXPECT_LE(share_after({pull(5000.0)}, 60), 1.0 + 1e-9);
+  EXPECT_LE(share_after({pull(120.0), pull(120.0), pull(120.0)}, 60), 1.0 + 1e-9);
+  EXPECT_GT(share_after({pull(120.0), pull(120.0), pull(120.0)}, 60), 0.99);
+}
+
+TEST(Muscles, GiveWhatIsAskedBelowThat) {
+  const test::StandingMan man;
+  const double most = strength_of(man.body, Sex::male, 1.0)[index(Joint::hip_r)].most_n_m.z();
+  EXPECT_NEAR(share_after({pull(0.1 * most)}, 30), 0.1, 0.01);
+}
+
+TEST(Muscles, TakeTheirTimeToGrow) {
+  // From nothing to everything in 0.2 s.
+  EXPECT_NEAR(share_after({pull(5000.0)}, 1 + 12), 12 * kStep_s / 0.2, 0.03);
+  EXPECT_NEAR(share_after({pull(5000.0)}, 1 + 24), 24 * kStep_s / 0.2, 0.03);
+}
+
+TEST(Physics, GoesBackToASavedStateWithoutATrace) {
+  const test::StandingMan man;
+  Physics physics = physics_of(man, strength_of(man.body, Sex::male, 1.0));
+  Goals asked;
+  asked.joints[index(Joint::hip_r)] = {pull(20.0)};
+  const Contacts contacts = physics.find_contacts();
+  physics.save();
+  physics.step(0.0, kStep_s, asked, contacts);
+  const BodyPose once = physics.segments();
+  physics.restore();
+  physics.step(0.0, kStep_s, asked, contacts);
+  const BodyPose twice = physics.segments();
+  bool moved = false;
+  for (int s = 0; s < kSegmentCount; ++s) {
+    EXPECT_EQ(once[s].translation, twice[s].translation) << s;
+    EXPECT_EQ(once[s].rotation.coeffs(), twice[s].rotation.coeffs()) << s;
+    moved = moved || once[s].translation != man.segments[s].translation;
+  }
+  EXPECT_TRUE(moved);
+}
+
+}  // namespace
+}  // namespace ukemi
