@@ -132,6 +132,7 @@ TEST(Recovery, OfWhoLiesGetsUpWhereHeIsAndStaysAboveTheFloor) {
 
 TEST(Recovery, OfWhoLiesToAWalkDoesNotWalkBeforeHeStands) {
   BakeSettings settings;
+  settings.behaviour = Behaviour::limp;
   settings.clip = "walk";
   settings.at_s = 0.5;
   settings.from = *parse_direction("back");
