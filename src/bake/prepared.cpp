@@ -120,6 +120,11 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
 
 SimulationInput simulation_input(const Prepared& prepared, const Scene& scene,
                                  const SimulationSettings& settings) {
+  return simulation_input(prepared, scene, settings, prepared.behaviour);
+}
+
+SimulationInput simulation_input(const Prepared& prepared, const Scene& scene,
+                                 const SimulationSettings& settings, const BehaviourSettings& behaviour) {
   return {prepared.body,
           prepared.range,
           prepared.thresholds,
@@ -127,7 +132,7 @@ SimulationInput simulation_input(const Prepared& prepared, const Scene& scene,
           prepared.start.state,
           scene,
           settings,
-          behaviour_of(prepared.body, prepared.home, scene, prepared.behaviour, settings)};
+          behaviour_of(prepared.body, prepared.home, scene, behaviour, settings)};
 }
 
 }  // namespace ukemi

@@ -45,5 +45,8 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
 /// What the simulation of a prepared bake is given.
 SimulationInput simulation_input(const Prepared& prepared, const Scene& scene,
                                  const SimulationSettings& settings);
+/// The same body with another behaviour.
+SimulationInput simulation_input(const Prepared& prepared, const Scene& scene,
+                                 const SimulationSettings& settings, const BehaviourSettings& behaviour);
 
 }  // namespace ukemi

@@ -1,5 +1,7 @@
 #include "bake/record.h"
 
+#include "bake/response.h"
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +51,10 @@ ReactionFigures figures_of(const BakedFile& baked) {
   figures.travel_m = std::hypot(moved.x(), moved.z());
   figures.momentum_n_s = outcome.figures.momentum_n_s;
   figures.rest_time_s = outcome.figures.rest_time_s;
+  const Response response = response_of(outcome);
+  figures.outcome = name(response.outcome);
+  figures.end_pose = name(response.end_pose);
+  figures.steps = static_cast<long>(response.steps.size());
   figures.duration_s = outcome.timeline.clip.duration_s();
   figures.joint_separation_max_m = outcome.figures.joint_separation_max_m;
   figures.energy_gain_max_j = outcome.figures.energy_gain_max_j;

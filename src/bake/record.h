@@ -18,6 +18,9 @@ struct ReactionFigures {
   double travel_m = 0.0;        // of the pelvis over the floor, from the first frame to the last
   double momentum_n_s = 0.0;    // of the blow
   std::optional<double> rest_time_s;
+  std::string outcome;   // stood, stepped, fell
+  std::string end_pose;  // standing, kneeling, seated, supine, prone, left_side, right_side
+  long steps = 0;
   double duration_s = 0.0;  // of the clip
   double joint_separation_max_m = 0.0;
   double energy_gain_max_j = 0.0;
@@ -34,6 +37,9 @@ void for_each_figure(Figures& figures, const Visit& visit) {
   visit("travel_m", figures.travel_m);
   visit("momentum_n_s", figures.momentum_n_s);
   visit("rest_time_s", figures.rest_time_s);
+  visit("outcome", figures.outcome);
+  visit("end_pose", figures.end_pose);
+  visit("steps", figures.steps);
   visit("duration_s", figures.duration_s);
   visit("joint_separation_max_m", figures.joint_separation_max_m);
   visit("energy_gain_max_j", figures.energy_gain_max_j);

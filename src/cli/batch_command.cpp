@@ -148,6 +148,22 @@ std::string_view plan_word(Plan plan) {
 }
 
 /// What would be done, and how long it would take.
+/// Recipes from before bodies lived meant falls where they said nothing.
+void note_living(const BatchPlan& plan) {
+  const auto unsaid =
+      std::count_if(plan.reactions.begin(), plan.reactions.end(), [](const Reaction& reaction) {
+        return !reaction.settings.behaviour && reaction.settings.simulation.fixed_hz == 0.0;
+      });
+  if (unsaid == 0) return;
+  std::fputs(
+      fmt::format(
+          "ukemi: note: {} reactions do not say their behaviour: they are alert and keep their feet where a "
+          "person would; behaviour = \"limp\" bakes falls of a limp body\n",
+          unsaid)
+          .c_str(),
+      stderr);
+}
+
 Result<std::string> dry_run_text(const BatchPlan& plan, const BatchSettings& settings) {
   std::string text;
   for (std::size_t i = 0; i < plan.reactions.size(); ++i) {
@@ -227,6 +243,7 @@ int run_planned(const BatchRequest& request, const BatchPlan& plan) {
         });
   }();
   if (!result) return print_error(result.error());
+  if (!request.quiet) note_living(plan);
   if (result->stopped || result->cannot_write) return report_stop(request, *result);
   if (const Status status = make_page(request, *result); !status) return print_error(status.error());
   const bool all_well = count(*result, ReactionStatus::done) == result->entries.size();

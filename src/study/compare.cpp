@@ -190,7 +190,8 @@ std::vector<Method> methods_to_compare(double duration_s) {
           {"c", paper(Limits::segments, Active::explicit_torque)},
           {"c-k1", paper(Limits::segments, Active::explicit_torque, kPaperActiveK)},
           {"ours", ours},
-          {"ours-limp", limp}};
+          {"ours-limp", limp},
+          {"living", ours, Behaviour::alert}};
 }
 
 bool exploded(const Trial& trial) {
@@ -202,7 +203,9 @@ Result<Trial> run_scene(const Comparison& comparison, const Method& method, cons
   const Prepared& prepared = comparison.prepared;
   const bool own = comparison.settings.region == kJudgedRegion;
   Diagnostics unsaid;
-  return simulate_trial(simulation_input(prepared, scene, method.simulation),
+  BehaviourSettings behaviour = prepared.behaviour;
+  behaviour.kind = method.behaviour;
+  return simulate_trial(simulation_input(prepared, scene, method.simulation, behaviour),
                         own ? prepared.range : comparison.judged, unsaid);
 }
 

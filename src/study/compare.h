@@ -44,10 +44,12 @@ std::string describe(const RandomHit& hit);
 /// a: stops for each axis on its own, of the polygon's bounding box (the baseline of the paper). b: the
 /// chords of Figure 4 with exact rows; b-euler: the same as stops of Euler angles. c: b and explicit
 /// active restriction with k = 20 1/s; c-k1: with the paper's k = 1 1/s. These run on a limp body in fixed
-/// steps of 1/480 s without rest stop. ours: a bake's defaults; ours-limp: without muscle tone and damping.
+/// steps of 1/480 s without rest stop. ours: a bake's defaults on a limp body; ours-limp: without muscle tone
+/// and damping; living: a bake's defaults on a body that lives.
 struct Method {
   std::string name;
   SimulationSettings simulation;
+  Behaviour behaviour = Behaviour::limp;
 };
 std::vector<Method> methods_to_compare(double duration_s);
 

@@ -302,7 +302,8 @@ TEST_F(Batch, ADryRunListsEstimatesAndWritesNothing) {
 
 TEST_F(Batch, SaysALineForEachReactionOrNothing) {
   const Ran lines = batch("out");
-  EXPECT_EQ(std::count(lines.err.begin(), lines.err.end(), '\n'), kReactions);
+  EXPECT_EQ(std::count(lines.err.begin(), lines.err.end(), '\n'),
+            kReactions + 1);  // and the note on behaviours
   EXPECT_NE(lines.err.find("8/8 mannequin/"), std::string::npos);
   const Ran quiet = batch("quiet", {"--quiet"});
   EXPECT_EQ(quiet.out + quiet.err, "");

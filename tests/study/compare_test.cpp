@@ -153,7 +153,8 @@ TEST(Compare, ChangesAreThoseOfTheSameHitsWithTheirInterval) {
 TEST(Compare, RunsTheMethodsOfThePaperAndOurs) {
   std::vector<std::string> names;
   for (const Method& m : methods_to_compare(3.0)) names.push_back(m.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"a", "b", "b-euler", "c", "c-k1", "ours", "ours-limp"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"a", "b", "b-euler", "c", "c-k1", "ours", "ours-limp", "living"}));
   const auto methods = methods_to_compare(3.0);
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(methods[i].simulation.fixed_hz, 480.0);
@@ -174,7 +175,7 @@ TEST(Compare, FindsJointsOutsideTheirRangeWithStopsPerAxisAndNoneWithOurs) {
   EXPECT_GT(axis.over_1deg, 0);
   EXPECT_GT(axis.excess_max_deg, axis.excess_p999_deg);
   EXPECT_TRUE(axis.worst_joint);
-  for (const char* name : {"ours", "ours-limp"}) {
+  for (const char* name : {"ours", "ours-limp", "living"}) {
     const MethodFigures& ours = method(comparison, name);
     EXPECT_GT(ours.samples, 3 * 100 * kJointCount) << name;
     EXPECT_EQ(ours.over_1deg, 0) << name;
