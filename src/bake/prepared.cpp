@@ -132,7 +132,8 @@ SimulationInput simulation_input(const Prepared& prepared, const Scene& scene,
           prepared.start.state,
           scene,
           settings,
-          behaviour_of(prepared.body, prepared.home, scene, behaviour, settings)};
+          behaviour_of(prepared.body, prepared.range, prepared.strength, prepared.home, scene, behaviour,
+                       settings)};
 }
 
 }  // namespace ukemi

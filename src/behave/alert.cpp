@@ -1,47 +1,110 @@
 #include "behave/alert.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace ukemi {
 namespace {
 
-constexpr double kLeastStand_s = 0.6;  // a body at the edge of its feet may be still before it acts
-constexpr ToneSettings kFallingTone{0.3, 0.6};
+constexpr double kLeastStand_s = 0.6;     // a body at the edge of its feet may be still before it acts
+constexpr double kHandOver_s = 0.05;      // from the loss of balance to the first protecting motion
+constexpr double kLongestSwing_s = 0.45;  // after the loss a foot is in the air at most so long
+
+bool is_foot(Segment s) { return s == Segment::foot_l || s == Segment::foot_r; }
+
+bool beyond_feet(const Senses& senses) {
+  return std::any_of(senses.contacts.begin(), senses.contacts.end(), [](const SegmentContact& c) {
+    return c.with == SegmentContact::With::floor && !is_foot(c.segment);
+  });
+}
+
+/// What a share of a goal asks for.
+JointGoal weakened(JointGoal goal, double share) {
+  goal.feed_forward_n_m *= share;
+  goal.stiffness_n_m_rad *= share;
+  goal.damping_n_m_s_rad *= share;
+  goal.least_n_m *= share;
+  goal.most_n_m *= share;
+  return goal;
+}
 
 }  // namespace
 
-Alert::Alert(const ArticulatedBody& body, const BodyPose& home, double gravity, const StandSettings& settings)
-    : standing_(body, home, gravity, settings), tone_(body, kFallingTone) {}
+Alert::Alert(const ArticulatedBody& body, const RangeOfMotion& range, const MuscleStrength& strength,
+             const BodyPose& home, double gravity, const StandSettings& standing, const FallSettings& falling)
+    : standing_(body, home, gravity, standing),
+      falling_(falling, body, range, strength),
+      tempo_(standing_.physique().tempo) {}
 
-void Alert::start(const Senses& senses) { standing_.start(senses); }
+void Alert::start(const Senses& senses) {
+  standing_.start(senses);
+  falling_.start(senses);
+}
 
 void Alert::observe(const Senses& senses, double h) {
   time_s_ = senses.time_s;
-  if (falling_) {
-    Senses since = senses;
-    since.time_s -= fall_s_;
-    tone_.observe(since, h);
+  if (!over_) standing_.observe(senses, h);
+  if (falling_.begun()) {
+    release_swinging_leg(senses);
+    falling_.observe(senses, h);
+    over_ = over_ || standing_over(time_s_);
     return;
   }
-  standing_.observe(senses, h);
-  if (!standing_.lost_s()) return;
-  falling_ = true;
-  fall_s_ = senses.time_s;
-  tone_.start(senses);
+  falling_.watch(senses, h);
+  if (standing_.lost_s() && time_s_ >= *standing_.lost_s() + kHandOver_s * tempo_) begin_fall(senses);
+}
+
+/// A leg in the air goes on as it was until its foot is down.
+void Alert::begin_fall(const Senses& senses) {
+  PerJoint<double> from_s;
+  from_s.fill(senses.time_s);
+  swinging_ = standing_.swinging();
+  if (swinging_)
+    for (const Joint joint : {Joint::hip_r, Joint::knee_r, Joint::ankle_r})
+      from_s[index(on(*swinging_, joint))] = std::numeric_limits<double>::infinity();
+  falling_.begin(senses, from_s);
+}
+
+void Alert::release_swinging_leg(const Senses& senses) {
+  if (!swinging_) return;
+  const bool down = standing_.swinging() != swinging_ || beyond_feet(senses);
+  if (!down && senses.time_s < *standing_.lost_s() + kLongestSwing_s * tempo_) return;
+  for (const Joint joint : {Joint::hip_r, Joint::knee_r, Joint::ankle_r})
+    falling_.fade_in(on(*swinging_, joint), senses.time_s);
+  swinging_.reset();
+}
+
+bool Alert::standing_over(double time_s) const {
+  for (int j = 0; j < kJointCount; ++j)
+    if (falling_.faded(joint_at(j), time_s) < 1.0) return false;
+  return true;
 }
 
 void Alert::drive(double time_s, Goals& goals) const {
-  if (falling_)
-    tone_.drive(time_s - fall_s_, goals);
-  else
-    standing_.drive(goals);
+  if (!over_) {
+    Goals standing;
+    standing_.drive(standing);
+    for (int j = 0; j < kJointCount; ++j) {
+      const double share = 1.0 - falling_.faded(joint_at(j), time_s);
+      for (const JointGoal& goal : standing.joints[j])
+        if (share > 0.0) goals.joints[j].push_back(weakened(goal, share));
+    }
+    goals.firm_soles = standing.firm_soles && !falling_.begun();
+  }
+  falling_.drive(time_s, goals);
 }
 
-bool Alert::done() const { return falling_ || (time_s_ > kLeastStand_s && standing_.calm()); }
+bool Alert::done() const {
+  if (falling_.begun()) return falling_.done();
+  return !standing_.lost_s() && time_s_ > kLeastStand_s && standing_.calm();
+}
 
 ControllerReport Alert::report() const {
-  ControllerReport report;
+  ControllerReport report = falling_.report();
   report.steps = standing_.steps();
   report.fall_begins_s = standing_.lost_s();
-  if (standing_.lost_s()) report.events.push_back({"lost: " + standing_.lost_why(), *standing_.lost_s()});
+  if (standing_.lost_s())
+    report.events.insert(report.events.begin(), {"lost: " + standing_.lost_why(), *standing_.lost_s()});
   return report;
 }
 

@@ -1,14 +1,15 @@
-// A body that lives: stands as long as it can, and falls when balance is lost.
+// A body that lives: stands as long as it can, and falls with care when balance is lost.
 #pragma once
 
+#include "behave/fall.h"
 #include "behave/stand.h"
-#include "behave/tone.h"
 
 namespace ukemi {
 
 class Alert : public Controller {
  public:
-  Alert(const ArticulatedBody& body, const BodyPose& home, double gravity, const StandSettings& settings);
+  Alert(const ArticulatedBody& body, const RangeOfMotion& range, const MuscleStrength& strength,
+        const BodyPose& home, double gravity, const StandSettings& standing, const FallSettings& falling);
 
   void start(const Senses& senses) override;
   void observe(const Senses& senses, double h) override;
@@ -17,10 +18,16 @@ class Alert : public Controller {
   ControllerReport report() const override;
 
  private:
+  void begin_fall(const Senses& senses);
+  void release_swinging_leg(const Senses& senses);
+  bool standing_over(double time_s) const;
+
   Standing standing_;
-  ToneBehaviour tone_;
-  bool falling_ = false;
-  double time_s_ = 0.0, fall_s_ = 0.0;
+  Falling falling_;
+  double tempo_;
+  double time_s_ = 0.0;
+  std::optional<BodySide> swinging_;  // at the loss: this leg goes on until its foot is down
+  bool over_ = false;                 // nothing of standing is left
 };
 
 }  // namespace ukemi

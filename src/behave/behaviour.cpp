@@ -68,12 +68,16 @@ StandSettings stand_settings(const ArticulatedBody& body, const Scene& scene,
 
 }  // namespace
 
-MakeController behaviour_of(const ArticulatedBody& body, const BodyPose& home, const Scene& scene,
+MakeController behaviour_of(const ArticulatedBody& body, const RangeOfMotion& range,
+                            const MuscleStrength& strength, const BodyPose& home, const Scene& scene,
                             const BehaviourSettings& behaviour, const SimulationSettings& settings) {
   if (behaviour.kind == Behaviour::limp) return limp_behaviour(body, settings);
   const StandSettings stand = stand_settings(body, scene, behaviour);
-  return [&body, &home, stand, gravity = settings.gravity] {
-    return std::make_unique<Alert>(body, home, gravity, stand);
+  FallSettings fall = behaviour.kind == Behaviour::dazed ? FallSettings::dazed() : FallSettings::alert();
+  fall.arms_free = behaviour.arms_free;
+  fall.seed = behaviour.seed;
+  return [&body, &range, &strength, &home, stand, fall, gravity = settings.gravity] {
+    return std::make_unique<Alert>(body, range, strength, home, gravity, stand, fall);
   };
 }
 

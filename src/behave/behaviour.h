@@ -23,9 +23,10 @@ struct BehaviourSettings {
   std::optional<UnderWay> under_way;  // a start from motion
 };
 
-/// The behaviour of a body that stands in `home` when the blow of `scene` comes. `home` and `body` must
-/// outlive the runs.
-MakeController behaviour_of(const ArticulatedBody& body, const BodyPose& home, const Scene& scene,
+/// The behaviour of a body that stands in `home` when the blow of `scene` comes. `home`, `body`, `range` and
+/// `strength` must outlive the runs.
+MakeController behaviour_of(const ArticulatedBody& body, const RangeOfMotion& range,
+                            const MuscleStrength& strength, const BodyPose& home, const Scene& scene,
                             const BehaviourSettings& behaviour, const SimulationSettings& settings);
 
 }  // namespace ukemi

@@ -4,19 +4,11 @@
 #include <array>
 #include <vector>
 
+#include "behave/sides.h"
 #include "body/body.h"
 #include "physics/senses.h"
 
 namespace ukemi {
-
-enum class BodySide { left, right };
-inline constexpr std::array<BodySide, 2> kSides = {BodySide::left, BodySide::right};
-constexpr BodySide other(BodySide side) { return side == BodySide::left ? BodySide::right : BodySide::left; }
-constexpr int index(BodySide side) { return static_cast<int>(side); }
-/// -1 left, 1 right: along the body's right.
-constexpr double sign(BodySide side) { return side == BodySide::left ? -1.0 : 1.0; }
-template <typename T>
-using PerSide = std::array<T, 2>;
 
 /// World orientations of a leg's segments.
 struct LegPosture {

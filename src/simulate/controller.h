@@ -27,11 +27,28 @@ struct BehaviourEvent {
   double time_s = 0.0;
 };
 
+/// The first time that a part of the body met the floor in a fall.
+struct FirstTouch {
+  Segment segment = Segment::pelvis;
+  double time_s = 0.0;
+  double speed_m_s = 0.0;  // of approach, of the point that touched
+};
+
+/// How a body came down. Nothing of it before the fall.
+struct FallReport {
+  std::optional<double> begins_s;   // protection began
+  std::optional<double> landed_s;   // the body is down
+  std::optional<double> settled_s;  // and lies
+  std::optional<FirstTouch> first, hand, knee, pelvis, head;
+  std::string end_pose;  // kneeling, seated, supine, prone, left_side, right_side
+};
+
 /// What a behaviour did.
 struct ControllerReport {
   std::vector<StepTaken> steps;
   std::optional<double> fall_begins_s;  // balance was lost
   std::vector<BehaviourEvent> events;
+  FallReport fall;
 };
 
 /// A behaviour. Its state changes in start() and observe() alone, so that a rejected step needs no undo.

@@ -27,9 +27,10 @@ SimulationResult lives(const Blow& blow, const BehaviourSettings& behaviour = {}
   static const auto strength = muscle_strength(man.body, Sex::male, 1.0);
   const StartState start = man.start();
   Diagnostics diagnostics;
-  auto result = simulate({man.body, man.range, *thresholds, *strength, start, scene, settings,
-                          behaviour_of(man.body, start.segments, scene, behaviour, settings)},
-                         diagnostics);
+  auto result =
+      simulate({man.body, man.range, *thresholds, *strength, start, scene, settings,
+                behaviour_of(man.body, man.range, *strength, start.segments, scene, behaviour, settings)},
+               diagnostics);
   EXPECT_TRUE(result) << result.error().message();
   return result ? std::move(*result) : SimulationResult{};
 }
@@ -145,9 +146,10 @@ TEST(Stand, ABodyOfStrangeMassOrGravityStaysFinite) {
     const auto strength = muscle_strength(man.body, Sex::male, 1.0);
     const StartState start = man.start();
     Diagnostics diagnostics;
-    const auto result = simulate({man.body, man.range, *thresholds, *strength, start, scene, settings,
-                                  behaviour_of(man.body, start.segments, scene, {}, settings)},
-                                 diagnostics);
+    const auto result =
+        simulate({man.body, man.range, *thresholds, *strength, start, scene, settings,
+                  behaviour_of(man.body, man.range, *strength, start.segments, scene, {}, settings)},
+                 diagnostics);
     if (!result) continue;
     for (const Rigid& segment : result->trajectory.frames.back())
       EXPECT_TRUE(segment.translation.allFinite()) << gravity;
