@@ -55,7 +55,7 @@ struct WrittenFile {
 
 struct ReactionRecord {
   std::string character, name;             // folder, and name of the files
-  std::string digest;                      // of the inputs
+  std::string digest;                      // of the inputs and the program
   std::optional<ReactionFigures> figures;  // of what was baked; nothing where it failed
   std::vector<WrittenFile> files;
   std::vector<std::string> warnings;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/digest.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "batch/batch_work.h"
@@ -38,22 +39,30 @@ const ReactionRecord* finished(const History& history, const std::string& digest
   return is_intact(record->second, folder) ? &record->second : nullptr;
 }
 
-Status take_digests(BatchPlan& plan) {
+std::string journal_digest(std::string_view program, const std::string& inputs) {
+  Digest digest;
+  digest.add_field(program);
+  digest.add_field(inputs);
+  return digest.hex();
+}
+
+Status take_digests(BatchPlan& plan, std::string_view program) {
   InputDigests digests(plan.recipe);
   plan.planned.assign(plan.reactions.size(), {});
   for (std::size_t i = 0; i < plan.reactions.size(); ++i) {
     auto digest = digests.of(plan.reactions[i]);
     if (!digest) return digest.error();
+    plan.planned[i].journal_digest = journal_digest(program, *digest);
     plan.planned[i].digest = std::move(*digest);
   }
   return Done{};
 }
 
-Status expand(BatchPlan& plan) {
+Status expand(BatchPlan& plan, std::string_view program) {
   auto reactions = reactions_of(plan.recipe, plan.history.verdicts.takes);
   if (!reactions) return reactions.error();
   plan.reactions = std::move(*reactions);
-  return take_digests(plan);
+  return take_digests(plan, program);
 }
 
 void decide(BatchPlan& plan, const BatchSettings& settings) {
@@ -63,7 +72,7 @@ void decide(BatchPlan& plan, const BatchSettings& settings) {
       planned.plan = Plan::elsewhere;
     else if (plan.history.verdicts.left_out.contains(key_of(plan.recipe, plan.reactions[i])))
       planned.plan = Plan::left_out;
-    else if (!settings.force && finished(plan.history, planned.digest, settings.folder))
+    else if (!settings.force && finished(plan.history, planned.journal_digest, settings.folder))
       planned.plan = Plan::keep;
   }
 }
@@ -73,8 +82,8 @@ Status merge_folder(const BatchPlan& plan, const BatchSettings& settings, const 
                     Journal& journal, std::map<std::string, ReactionRecord>& records) {
   const History history = read_history(from);
   for (const PlannedReaction& planned : plan.planned) {
-    const auto known = history.by_digest.find(planned.digest);
-    if (known == history.by_digest.end() || records.contains(planned.digest)) continue;
+    const auto known = history.by_digest.find(planned.journal_digest);
+    if (known == history.by_digest.end() || records.contains(planned.journal_digest)) continue;
     const ReactionRecord& record = known->second;
     if (record.done() && !is_intact(record, from)) continue;
     std::error_code error;
@@ -87,7 +96,7 @@ Status merge_folder(const BatchPlan& plan, const BatchSettings& settings, const 
     }
     if (!same)
       if (const Status status = journal.add(record); !status) return status;
-    if (record.done()) records.emplace(planned.digest, record);
+    if (record.done()) records.emplace(planned.journal_digest, record);
   }
   return Done{};
 }
@@ -122,7 +131,7 @@ class Batch {
       : plan_(plan), settings_(settings), journal_(std::move(journal)) {
     for (const PlannedReaction& planned : plan.planned)
       if (planned.plan == Plan::keep)
-        records_.emplace(planned.digest, plan.history.by_digest.at(planned.digest));
+        records_.emplace(planned.journal_digest, plan.history.by_digest.at(planned.journal_digest));
     result_.kept = records_.size();
   }
 
@@ -139,7 +148,7 @@ class Batch {
     std::vector<std::size_t> reactions;
     for (std::size_t i = 0; i < plan_.reactions.size(); ++i) {
       if (plan_.planned[i].plan != Plan::bake) continue;
-      jobs.push_back(batch_job(i, plan_.planned[i].digest, true));
+      jobs.push_back(batch_job(i, plan_.planned[i].journal_digest, true));
       reactions.push_back(i);
     }
     BatchProgress state;
@@ -182,7 +191,7 @@ class Batch {
       record = std::move(*parsed);
     } else {
       std::tie(record.character, record.name) = key_of(plan_.recipe, plan_.reactions[i]);
-      record.digest = plan_.planned[i].digest;
+      record.digest = plan_.planned[i].journal_digest;
       record.error = "the worker " + (end.failure.empty() ? "gave no answer" : end.failure) + ", twice";
       record.fix = "bake it alone to see more: ukemi bake";
     }
@@ -215,7 +224,7 @@ class Batch {
       entry.error = comment.empty() ? "left out by a reviewer" : "left out by a reviewer: " + comment;
       return entry;
     }
-    const auto record = records_.find(planned.digest);
+    const auto record = records_.find(planned.journal_digest);
     if (record == records_.end()) {
       if (settings_.merge.empty()) return std::nullopt;
       entry.error = "is in none of the merged folders";
@@ -255,10 +264,10 @@ Result<BatchPlan> plan_batch(const BatchSettings& settings) {
         settings.folder, "holds a batch already",
         "add --resume to bake what is missing or changed, --force to bake everything again, or "
         "choose another folder");
-  if (const Status status = expand(plan); !status) return status.error();
+  if (const Status status = expand(plan, settings.program); !status) return status.error();
   if (!settings.rejects.empty()) {
     if (const Status status = take_rejects(settings.rejects, plan); !status) return status.error();
-    if (const Status status = expand(plan); !status) return status.error();
+    if (const Status status = expand(plan, settings.program); !status) return status.error();
   }
   decide(plan, settings);
   return plan;

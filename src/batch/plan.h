@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/build_id.h"
 #include "batch/journal.h"
 #include "batch/recipe.h"
 #include "batch/workers.h"
@@ -31,13 +32,15 @@ struct BatchSettings {
   std::optional<double> max_excess_deg;      // reject what leaves the range of motion farther
   bool reject_unsettled = false;             // reject what does not come to rest
   WorkerSettings workers;
+  std::string program{build_id()};  // that bakes: what another one baked is not kept
 };
 
 enum class Plan { bake, keep, left_out, elsewhere };  // elsewhere: another shard's
 
 struct PlannedReaction {
   Plan plan = Plan::bake;
-  std::string digest;
+  std::string digest;          // of the inputs: what the manifest says
+  std::string journal_digest;  // of the inputs and the program: what the journal says
 };
 
 /// What a batch is going to do.
