@@ -1,0 +1,34 @@
+"""In Blender, FOLDER FILE...: bakes on each rig and compares where its bones are with the program's own glTF."""
+
+import pathlib
+import sys
+
+import bpy
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import stage  # noqa: E402
+
+folder, *files = stage.arguments()
+TOLERANCE_M = 1e-4
+failed = 0
+for file in files:
+    stage.begin()
+    armature = stage.load(file)
+    stage.keep_files(folder)
+    scene = bpy.context.scene
+    scene.ukemi.hit = "head"
+    setattr(scene.ukemi, "from", "left")
+    first = scene.frame_current
+    assert bpy.ops.ukemi.bake("EXEC_DEFAULT") == {"FINISHED"}, file
+    played = stage.Played(pathlib.Path(folder) / "hit.glb")
+    names = [bone.name for bone in armature.data.bones]
+    fps = scene.render.fps / scene.render.fps_base
+    frames = round(played.duration * fps)
+    times = [round(i * frames / 9) / fps for i in range(10)]
+    distance, bone, time = stage.largest_distance(armature, played, first, names, times)
+    moved = max((a - b).length for a, b in zip(stage.bone_places(armature, names, first), stage.bone_places(armature, names, first + frames)))
+    ok = distance <= TOLERANCE_M and moved > 0.05
+    failed += not ok
+    print(f"roundtrip: {'ok' if ok else 'WRONG'} {pathlib.Path(file).name}: {len(names)} bones, {distance * 1e6:.1f} um at {bone} {time:.2f} s, moved {moved:.2f} m")
+print(f"roundtrip: {len(files) - failed} of {len(files)} rigs")
+sys.exit(1 if failed or not files else 0)
