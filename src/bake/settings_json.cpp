@@ -1,5 +1,6 @@
 #include "bake/settings_json.h"
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -29,8 +30,12 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kUnits =
                                                                                    {"TIMES", "1"},
                                                                                    {"0..1", "1"}}};
 
-constexpr std::string_view type_of(Setting::Kind kind) {
-  switch (kind) {
+/// Texts that are nothing but one of their words.
+constexpr std::array<std::string_view, 3> kWordsOnly = {"hit", "preset", "scene"};
+
+std::string_view type_of(const Setting& setting) {
+  if (std::find(kWordsOnly.begin(), kWordsOnly.end(), setting.name) != kWordsOnly.end()) return "choice";
+  switch (setting.kind) {
     case Setting::Kind::number:
       return "number";
     case Setting::Kind::choice:
@@ -109,7 +114,7 @@ Result<std::string> settings_json() {
     if (!choices) return choices.error();
     json["settings"].push_back({{"name", setting.name},
                                 {"group", setting.group},
-                                {"type", type_of(setting.kind)},
+                                {"type", type_of(setting)},
                                 {"default", default_of(setting)},
                                 {"unset", text_or_null(setting.unset)},
                                 {"range", range_of(setting)},

@@ -19,7 +19,7 @@ struct Command {
   int (*run)(const Arguments&);
 };
 
-constexpr std::array<Command, 10> kCommands = {{
+constexpr std::array<Command, 11> kCommands = {{
     {"bake", "CHARACTER", "one hit reaction of a character: clip, contact sheet, report", bake_command},
     {"batch", "RECIPE", "many reactions, in many processes, resumable", batch_command},
     {"recipe", "", "prints a commented recipe for batch", recipe_command},
@@ -33,6 +33,7 @@ constexpr std::array<Command, 10> kCommands = {{
      rom_command},
     {"calibrate", "FILE...", "thresholds of the active restriction from people who stand and walk",
      calibrate_command},
+    {"help", "TOPIC", "pages to read: blender", help_command},
 }};
 
 std::string overview() {
@@ -60,7 +61,7 @@ int refuse(const std::string& what, const std::string& fix) {
 int run(const Arguments& arguments) {
   if (arguments.empty()) return refuse("no command", "see ukemi --help");
   const std::string& word = arguments.front();
-  if (word == "--help" || word == "-h" || word == "help") return print_result(overview(), 0);
+  if (word == "--help" || word == "-h") return print_result(overview(), 0);
   if (word == "--version") return print_result(generator() + "\n", 0);
   for (const Command& command : kCommands)
     if (command.name == word) return command.run(Arguments(arguments.begin() + 1, arguments.end()));

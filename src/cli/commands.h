@@ -18,6 +18,7 @@ int diff_command(const Arguments& arguments);
 int rom_command(const Arguments& arguments);
 int calibrate_command(const Arguments& arguments);
 int review_command(const Arguments& arguments);
+int help_command(const Arguments& arguments);
 
 /// The whole command line without the program's name.
 int run(const Arguments& arguments);

@@ -100,7 +100,7 @@ TEST(SettingsAsData, AreAllOfThemWithUnitsRangesAndChoices) {
     EXPECT_EQ(told["unit"].is_string(), number);
     EXPECT_EQ(told["range"].is_object(), number);
     EXPECT_EQ(told["type"] == "number", number);
-    EXPECT_TRUE(setting.kind != Setting::Kind::choice || told["choices"].size() >= 2);
+    EXPECT_TRUE(told["type"] != "choice" || told["choices"].size() >= 2);
     EXPECT_FALSE(told["help"].get<std::string>().empty());
   }
 }
@@ -114,6 +114,16 @@ TEST(SettingsAsData, HaveTheDefaultsInTheirOwnTypes) {
   EXPECT_EQ(all.at("map")["default"], nlohmann::json::array());
   EXPECT_EQ(all.at("mass")["default"], nullptr);
   EXPECT_NE(all.at("mass")["unset"], nullptr);
+}
+
+TEST(SettingsAsData, CallAChoiceWhatTakesNothingButItsWords) {
+  for (const auto& [name, told] : described()) {
+    if (told["type"] != "choice") continue;
+    BakeSettings settings;
+    const auto& setting = *find_setting(name);
+    EXPECT_FALSE(setting->set(settings, "0")) << name;
+    EXPECT_FALSE(setting->set(settings, "no-such-word")) << name;
+  }
 }
 
 TEST(SettingsAsData, OfferOnlyWhatIsLegal) {

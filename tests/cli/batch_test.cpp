@@ -435,5 +435,14 @@ TEST_F(Batch, ThePrintedRecipeCanBeBakedAsItIs) {
   EXPECT_EQ(run({"batch", "r.toml", "-o", "out", "--dry-run"}).status, 0);
 }
 
+TEST_F(Batch, TheSettingsComeAsData) {
+  const Ran printed = run({"recipe", "--json"});
+  EXPECT_EQ(printed.status, 0);
+  const auto json = nlohmann::json::parse(printed.out);
+  EXPECT_EQ(json["settings"][0]["name"], "hit");
+  EXPECT_EQ(json["settings"][0]["default"], "chest");
+  EXPECT_NE(json["settings"][0]["choices"], nullptr);
+}
+
 }  // namespace
 }  // namespace ukemi

@@ -167,8 +167,25 @@ TEST_F(Help, NamesEveryCommandAndOnlyThose) {
   const std::string text = run({"--help"}).out;
   for (const char* command :
        {"bake CHARACTER", "inspect FILE", "render FILE", "diff A B", "compare CHARACTER", "review DIR", "rom",
-        "calibrate FILE...", "batch RECIPE", "recipe"})
+        "calibrate FILE...", "batch RECIPE", "recipe", "help TOPIC"})
     EXPECT_NE(text.find(command), std::string::npos) << command;
+}
+
+TEST_F(Help, HasPagesToReadThatTheOverviewNames) {
+  const std::string overview = run({"--help"}).out;
+  std::size_t pages = 0;
+  for (const auto& page : fs::directory_iterator(UKEMI_ASSETS_FOLDER "/help")) {
+    const std::string topic = page.path().stem().string();
+    const Ran printed = run({"help", topic});
+    EXPECT_EQ(printed.status, 0) << printed.err;
+    EXPECT_EQ(printed.out.rfind("# ", 0), 0u) << printed.out;
+    EXPECT_NE(overview.find(topic), std::string::npos) << topic;
+    ++pages;
+  }
+  EXPECT_GE(pages, 1u);
+  EXPECT_EQ(run({"help"}).out, overview);
+  expect_refused({"help", "blendre"}, kMustChange, "did you mean 'blender'?");
+  expect_refused({"help", "blender", "batch"}, kMustChange, "more than one topic");
 }
 
 TEST_F(Help, TellsDefaultsAndLegalRanges) {
