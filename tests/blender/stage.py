@@ -45,6 +45,9 @@ def keep_files(folder):
     """Lets the add-on's next bakes leave their files in `folder`: rig.glb, hit.glb, hit.json."""
     from ukemi import operators
 
+    if hasattr(operators.Job, "keeps"):
+        return
+    operators.Job.keeps = True
     close = operators.Job.close
 
     def close_and_keep(job):

@@ -44,7 +44,7 @@ class UKEMI_PT_main(_Panel, bpy.types.Panel):
         row.scale_y = 1.5
         row.operator("ukemi.bake", icon="PLAY")
         row = layout.row(align=True)
-        row.operator("ukemi.bake_variations")
+        row.operator("ukemi.bake_variations", text="Variations")
         row.prop(group, "variations", text="")
         if group.last_action:
             _draw_last(layout, group)
@@ -82,7 +82,7 @@ def _draw_last(layout, group):
     row = box.row(align=True)
     row.operator("ukemi.keep", icon="CHECKMARK")
     row.operator("ukemi.discard", icon="TRASH")
-    row.operator("ukemi.again", icon="FILE_REFRESH", text="Again")
+    box.operator("ukemi.again", icon="FILE_REFRESH")
 
 
 class UKEMI_PT_variations(_Panel, bpy.types.Panel):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A baked clip on the armature that it was baked for."""
 
+import math
+
 from mathutils import Matrix, Quaternion, Vector
 
 from . import control_rigs
@@ -15,51 +17,51 @@ class Track:
         self.locations, self.rotations = [], []
 
 
-def _world_from_node(clip):
-    """World matrices of glTF of every node that is a bone or above one: one list for each frame."""
-    parents = {}
-    for index, node in enumerate(clip.nodes):
-        for child in node.get("children", []):
-            parents[child] = index
-
-    def local(index, frame):
-        node, moving = clip.nodes[index], clip.channels.get(index, {})
-        if "matrix" in node and not moving:
-            columns = node["matrix"]
-            return Matrix([columns[row::4] for row in range(4)])
-        place = moving["translation"][frame] if "translation" in moving else node.get("translation", (0, 0, 0))
-        x, y, z, w = moving["rotation"][frame] if "rotation" in moving else node.get("rotation", (0, 0, 0, 1))
-        scale = moving["scale"][frame] if "scale" in moving else node.get("scale", (1, 1, 1))
-        return Matrix.LocRotScale(Vector(place), Quaternion((w, x, y, z)), Vector(scale))
-
-    for frame in range(len(clip.times)):
-        found = {}
-
-        def world(index):
-            if index not in found:
-                own = local(index, frame)
-                found[index] = world(parents[index]) @ own if index in parents else own
-            return found[index]
-
-        yield world
+def _parents(clip):
+    return {child: index for index, node in enumerate(clip.nodes) for child in node.get("children", [])}
 
 
-def _carried(clip):
-    """Node above the armature's own that the program added to carry the root motion, or -1."""
-    for index, node in enumerate(clip.nodes):
-        if 0 in node.get("children", []):
-            return index
-    return -1
+def _local(clip, index, frame=None):
+    """A node's transform at a frame, or as it stands in the file."""
+    node, moving = clip.nodes[index], clip.channels.get(index, {}) if frame is not None else {}
+    place = moving["translation"][frame] if "translation" in moving else node.get("translation", (0, 0, 0))
+    x, y, z, w = moving["rotation"][frame] if "rotation" in moving else node.get("rotation", (0, 0, 0, 1))
+    scale = moving["scale"][frame] if "scale" in moving else node.get("scale", (1, 1, 1))
+    return Matrix.LocRotScale(Vector(place), Quaternion((w, x, y, z)), Vector(scale))
+
+
+def _worlds(clip, wanted, frame=None):
+    """World matrices of glTF of the nodes wanted, by index."""
+    parents, found = _parents(clip), {}
+
+    def world(index):
+        if index not in found:
+            own = _local(clip, index, frame)
+            found[index] = world(parents[index]) @ own if index in parents else own
+        return found[index]
+
+    return {index: world(index) for index in wanted}
+
+
+def _carrier(armature, clip):
+    """The node that the program added to carry the root motion, between the armature and its bones, or 0."""
+    bones = len(Skeleton(armature).names)
+    parents = _parents(clip)
+    return next((parents[i] for i in range(1, bones + 1) if parents.get(i, 0) > bones), 0)
 
 
 def poses_of(armature, clip):
     """For each frame of the clip: the object's world matrix, and the bones' matrices in the armature's space by name."""
     names = Skeleton(armature).names
-    world_from_gltf = GLTF_FROM_WORLD.inverted()
-    for world in _world_from_node(clip):
-        of_object = world(0)
+    world_from_gltf, carrier = GLTF_FROM_WORLD.inverted(), _carrier(armature, clip)
+    wanted = [0, carrier, *range(1, len(names) + 1)]
+    still = _worlds(clip, [0, carrier])
+    object_from_carrier = still[carrier].inverted() @ still[0]
+    for frame in range(len(clip.times)):
+        world = _worlds(clip, wanted, frame)
+        of_object = world[carrier] @ object_from_carrier
         inverse = of_object.inverted()
-        yield world_from_gltf @ of_object, {name: inverse @ world(i + 1) for i, name in enumerate(names)}
+        yield world_from_gltf @ of_object, {name: inverse @ world[i + 1] for i, name in enumerate(names)}
 
 
 def moved_bones(armature, clip):
@@ -67,8 +69,8 @@ def moved_bones(armature, clip):
     return [name for i, name in enumerate(Skeleton(armature).names) if i + 1 in clip.channels]
 
 
-def moves_object(clip):
-    return _carried(clip) >= 0 or 0 in clip.channels
+def moves_object(armature, clip):
+    return _carrier(armature, clip) in clip.channels
 
 
 def tracks_of(armature, clip):
@@ -83,7 +85,7 @@ def tracks_of(armature, clip):
             above = {"parent_matrix": matrices[parent.name], "parent_matrix_local": parent.matrix_local} if parent else {}
             basis = bone.convert_local_to_pose(matrices[bone.name], bone.matrix_local, invert=True, **above)
             _add(tracks[bone.name], basis)
-    return ([whole] if moves_object(clip) else []) + list(tracks.values())
+    return ([whole] if moves_object(armature, clip) else []) + list(tracks.values())
 
 
 def control_tracks(context, armature, clip):
@@ -100,7 +102,7 @@ def control_tracks(context, armature, clip):
             evaluated = armature.evaluated_get(context.evaluated_depsgraph_get()).pose.bones
             for control, track in tracks.items():
                 _add(track, _basis(armature.data.bones[control], evaluated))
-    return ([whole] if moves_object(clip) else []) + list(tracks.values())
+    return ([whole] if moves_object(armature, clip) else []) + list(tracks.values())
 
 
 def _basis(bone, posed):
@@ -135,7 +137,8 @@ class Curves:
                 self.slot = action.slots.new(id_type="OBJECT", name=owner.name)
             layer = action.layers[0] if action.layers else action.layers.new("Layer")
             strip = layer.strips[0] if layer.strips else layer.strips.new(type="KEYFRAME")
-            self._curves = strip.channelbag(self.slot, ensure=True).fcurves
+            self._bag = strip.channelbag(self.slot, ensure=True)
+            self._curves = self._bag.fcurves
         else:
             self._curves = action.fcurves
 
@@ -147,8 +150,10 @@ class Curves:
             return self._curves.new(path, index=index, action_group=group)
         try:
             return self._curves.new(path, index=index, group_name=group)
-        except TypeError:  # 4.4 has no groups here
-            return self._curves.new(path, index=index)
+        except TypeError:  # before 5.0
+            curve = self._curves.new(path, index=index)
+            curve.group = self._bag.groups.get(group) or self._bag.groups.new(group)
+            return curve
 
     def assign(self, animation):
         animation.action = self.action
@@ -172,22 +177,34 @@ def _rotation_channels(target, track):
     return "rotation_euler", values
 
 
+_SHAPE = ("interpolation", "easing", "back", "amplitude", "period")
+
+
 def _write_curve(curves, path, index, group, frames, values):
+    """Keys the frames. Before the first of them the curve stays what it was, at every whole frame."""
     curve = curves.find(path, index)
     if curve is None:
         curve = curves.new(path, index, group)
     points = curve.keyframe_points
-    kept = [(p.co[0], p.co[1], p.interpolation) for p in points if p.co[0] < frames[0] - 1e-3]
+    kept = [p for p in points if p.co[0] < frames[0] - 1e-3]
+    shapes = [{name: getattr(p, name) for name in _SHAPE} for p in kept]
+    handles = [(tuple(p.co), tuple(p.handle_left), tuple(p.handle_right)) for p in kept]
+    first = math.floor(kept[-1].co[0]) + 1 if kept else frames[0]
+    between = range(first, math.ceil(frames[0] - 1e-3)) if kept else ()
+    keys = [co for co, _, _ in handles] + [(frame, curve.evaluate(frame)) for frame in between] + list(zip(frames, values))
     while len(points):
         points.remove(points[-1], fast=True)
-    points.add(len(kept) + len(frames))
-    flat = [number for frame, value, _ in kept for number in (frame, value)]
-    flat += [number for pair in zip(frames, values) for number in pair]
-    points.foreach_set("co", flat)
-    for point, (_, _, interpolation) in zip(points, kept):
-        point.interpolation = interpolation
-    for point in points[len(kept) :]:
+    points.add(len(keys))
+    points.foreach_set("co", [number for key in keys for number in key])
+    for point in points:
         point.interpolation = "LINEAR"
+    for point, shape, (_, left, right) in zip(points, shapes, handles):
+        for name, value in shape.items():
+            setattr(point, name, value)
+        point.handle_left_type = point.handle_right_type = "FREE"
+        point.handle_left, point.handle_right = left, right
+    if kept:
+        points[len(kept) - 1].interpolation = "LINEAR"
     curve.update()
 
 
