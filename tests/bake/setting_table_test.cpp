@@ -120,7 +120,7 @@ TEST(SettingsAsData, CallAChoiceWhatTakesNothingButItsWords) {
   for (const auto& [name, told] : described()) {
     if (told["type"] != "choice") continue;
     BakeSettings settings;
-    const auto& setting = *find_setting(name);
+    const Setting* setting = *find_setting(name);
     EXPECT_FALSE(setting->set(settings, "0")) << name;
     EXPECT_FALSE(setting->set(settings, "no-such-word")) << name;
   }

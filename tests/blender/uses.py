@@ -292,6 +292,48 @@ def test_refuses_with_the_reason():
     assert not len(bpy.data.actions)
 
 
+def linked():
+    """A scene into which the mannequin is linked from another file: the armature, active, and its mesh."""
+    fresh()
+    path = str(pathlib.Path(folder).with_name("linked.blend"))
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    stage.begin()
+    stage.keep_files(folder)
+    with bpy.data.libraries.load(path, link=True) as (source, target):
+        target.objects = list(source.objects)
+    objects = [o for o in target.objects if o.type in ("ARMATURE", "MESH")]
+    for thing in objects:
+        bpy.context.scene.collection.objects.link(thing)
+    return next(o for o in objects if o.type == "ARMATURE")
+
+
+def test_a_linked_armature_is_refused_and_an_override_is_baked():
+    armature = linked()
+    bpy.context.view_layer.objects.active = armature
+    assert "library override" in refusal(bpy.ops.ukemi.bake)
+    own = armature.override_create(remap_local_usages=True)
+    if own.name not in bpy.context.scene.collection.objects:
+        bpy.context.scene.collection.objects.link(own)
+    bpy.context.view_layer.objects.active = own
+    bpy.context.scene.ukemi.duration = 0.5
+    bake()
+    assert own.animation_data.action.library is None
+    played = stage.Played(pathlib.Path(folder) / "hit.glb")
+    distance = stage.largest_distance(own, played, 1, [b.name for b in own.data.bones], [i / 20 for i in range(10)])
+    assert distance[0] < 1e-4, distance
+
+
+def test_of_several_armatures_the_active_one_is_baked():
+    first, scene, _ = fresh()
+    second = stage.load(mannequin)
+    second.animation_data_clear()
+    second.location.x = 2
+    bpy.context.view_layer.objects.active = next(o for o in second.children if o.type == "MESH")
+    bake()
+    assert first.animation_data is None and second.animation_data.action is not None
+    assert place(second, "Head", 20).x > 1
+
+
 def test_other_objects_stay():
     armature, scene, _ = fresh()
     empty = bpy.data.objects.new("parent", None)

@@ -6,7 +6,7 @@ import bpy
 from . import operators, settings
 
 # Settings that the first panel shows; the others stand below, under the program's own headings.
-FIRST = ["hit", "preset", "strength", "get-up", "duration"]
+FIRST = ["hit", "preset", "strength", "behaviour", "get-up", "duration"]
 
 
 def _draw_setting(layout, group, setting):

@@ -28,6 +28,11 @@ def _number(setting):
     default = setting["default"]
     if default is None:
         default = min(max(0.0, legal["min"]), legal["max"])
+    if setting["value"] == "N":  # a count
+        most = min(legal["max"], 2**31 - 1)
+        return bpy.props.IntProperty(
+            name=_label(setting), description=_description(setting), default=int(default), min=math.ceil(legal["min"]), max=int(most)
+        )
     return bpy.props.FloatProperty(
         name=_label(setting), description=_description(setting), default=default, min=legal["min"], max=legal["max"], precision=3
     )
@@ -187,10 +192,8 @@ def recipe(group, characters, extra=(), matrix=(), outputs=("glb", "report")):
     hits = varied.get("hit", (Described.named("hit") or {}).get("default") or "chest")
     lines = ["format = 1", "characters = [" + ", ".join(map(_quoted, characters)) + "]"]
     lines.append("outputs = [" + ", ".join(map(_quoted, outputs)) + "]")
-    if Described.named("seed") is None:
-        lines.append(f"seed = {group.seed}")
-    lines += ["", "[settings]"]
-    lines += [f"{s['name']} = {toml_value(s, v)}" for s, v in given(group) if s["name"] != "hit"]
+    lines += [f"seed = {group.seed}", "", "[settings]"]
+    lines += [f"{s['name']} = {toml_value(s, v)}" for s, v in given(group) if s["name"] not in ("hit", "seed")]
     lines += [*extra, "", "[[matrix]]", f"hit = [{_quoted(hits)}]", *matrix]
     return "\n".join(lines) + "\n"
 
