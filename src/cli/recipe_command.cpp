@@ -1,5 +1,5 @@
-#include "bake/settings_json.h"
 #include "batch/recipe.h"
+#include "batch/settings_json.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"

@@ -1,4 +1,4 @@
-#include "bake/settings_json.h"
+#include "batch/settings_json.h"
 
 #include <algorithm>
 #include <array>
