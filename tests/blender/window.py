@@ -6,6 +6,7 @@ import sys
 import traceback
 
 import bpy
+from mathutils import Euler
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import stage  # noqa: E402
@@ -61,10 +62,9 @@ def steps():
         bpy.data.actions.remove(action)
     space = view()["area"].spaces.active
     space.show_region_ui = True
-    with bpy.context.temp_override(**view()):
-        bpy.ops.view3d.view_axis(type="RIGHT")
-    space.region_3d.view_distance, space.region_3d.view_location = 5.0, (0, 0, 0.8)
-    space.shading.type = "SOLID"
+    space.region_3d.view_perspective = "PERSP"
+    space.region_3d.view_rotation = Euler((1.35, 0.0, 0.9)).to_quaternion()
+    space.region_3d.view_distance, space.region_3d.view_location = 3.6, (0.1, -0.1, 0.75)
     bpy.ops.ed.undo_push(message="the test begins")
     yield 0.5
     open_tab()
@@ -84,7 +84,7 @@ def steps():
     action = armature().animation_data.action
     assert action is not None and action.name == "chest_front"
     print(f"window: ok modal bake, {waited:.1f} s")
-    bpy.context.scene.frame_set(20)
+    bpy.context.scene.frame_set(11)
     yield 0.5
     screenshot = str(pathlib.Path(folder) / "panel.png")
     with bpy.context.temp_override(**view()):
