@@ -66,7 +66,7 @@ void find_home(const Character& character, const BakeSettings& settings, Prepare
   prepared.home = start;
   if (!prepared.start.from_clip || prepared.behaviour.kind == Behaviour::limp) return;
   const Pose pose = start_pose(character, prepared.humanoid, StartPose::stand,
-                               {true, static_cast<std::uint64_t>(settings.seed)});
+                               {true, Vec2::Zero(), static_cast<std::uint64_t>(settings.seed)});
   BodyPose stand = canonical_segments_of(character.skeleton, prepared.humanoid, pose);
   const bool still = pelvis_speed(prepared.start.state) < kUnderWay_m_s &&
                      foot_height(stand, start, Segment::foot_l) < kOffFloor_m &&

@@ -342,7 +342,8 @@ Settings behaviour_settings_table() {
                      [](auto& s) -> auto& { return s.behaviour; }),
                  "alert, or limp with --rate fixed"),
       number<S>(
-          "steps", "N", Range{0.0, 20.0}, "recovery steps at most; 0: the feet stay planted",
+          "steps", "N", Range{0.0, 20.0},
+          "recovery steps at most; 0: the feet stay planted, and the stand pose leans into the blow",
           [](auto& s) -> auto& { return s.most_steps; }),
       number<S>(
           "muscle", "TIMES", Range{0.1, 10.0}, "muscle strength, of a healthy adult's",

@@ -40,6 +40,12 @@ Result<Pose> still_pose(const Character& character, const Humanoid& humanoid, co
                      suggestion(text, {"rest", "stand", "guard"}) + ", or name a .bvh, .glb or .fbx file");
 }
 
+/// Who is to keep his feet in place leans into the blow.
+Vec2 braced_against(const BakeSettings& settings) {
+  if (settings.most_steps > 0.0) return Vec2::Zero();
+  return {std::cos(settings.from.azimuth), -std::sin(settings.from.azimuth)};
+}
+
 /// Differences of the segments as the nodes have them (their rolls do not jump) between two times of a clip;
 /// false where they are faster than any body: a cut, or a calibration pose before the motion.
 bool take_velocities(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& animation,
@@ -175,7 +181,7 @@ Result<Start> start_of(const Character& character, const Humanoid& humanoid, con
     start = std::move(*from_motion);
   } else {
     start.name = settings.pose.value_or("stand");
-    const StanceOptions stance{behaviour_settings(settings).kind != Behaviour::limp,
+    const StanceOptions stance{behaviour_settings(settings).kind != Behaviour::limp, braced_against(settings),
                                static_cast<std::uint64_t>(settings.seed)};
     auto pose = still_pose(character, humanoid, start.name, stance, diagnostics);
     if (!pose) return pose.error();

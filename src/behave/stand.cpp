@@ -16,7 +16,8 @@ constexpr double kCalmPush = 2.5;    // the same once a step has been taken and 
 constexpr double kLift = 75.0, kLiftDamping = 14.0;         // 1/s^2, 1/s: height
 constexpr double kUpright = 600.0, kUprightDamping = 30.0;  // N m/rad, N m s/rad: trunk
 constexpr double kMostUpright = 150.0;                      // N m
-constexpr double kReaction_s = 0.06;                        // from nothing to everything
+constexpr double kHipLean = 4.0, kMostLean = 0.7;  // rad per m of the capture point beyond planted feet, rad
+constexpr double kReaction_s = 0.06;               // from nothing to everything
 
 // Springs, N m/rad at strength 1: share of the torque at 0.35 rad.
 constexpr double kStiffness[] = {220.0, 160.0, 40.0,  70.0,  70.0,  60.0,  12.0,  70.0, 70.0,
@@ -418,7 +419,7 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
     closings_ = 0;
   }
   if (lost_s_ || active(senses.time_s) <= 0.0) return;
-  const double reach = settings_.most_steps == 0 ? m(0.12) : kOutOfReach * physique_.leg_length_m;
+  const double reach = settings_.most_steps == 0 ? m(0.25) : kOutOfReach * physique_.leg_length_m;
   const double tilt = (senses.pose[0].rotation * home_[0].rotation.conjugate() * Vec3::UnitY()).y();
   const bool touches =
       std::any_of(senses.contacts.begin(), senses.contacts.end(), [](const SegmentContact& c) {
@@ -441,14 +442,14 @@ void Standing::update_slow_state(const Senses& senses, const View& view, double 
   const double time_s = senses.time_s;
   const double since = time_s - std::max(landed_s_[0], landed_s_[1]);
   const double home = std::min(legs_[0].home_straightness, legs_[1].home_straightness);
+  const double bent = std::min(home, 0.967);
   double wanted = home;
   if (phase_ == Phase::shift)
-    wanted = 0.985;
+    wanted = std::min(home, 0.985);
   else if (phase_ == Phase::swing || since < s(0.3))
-    wanted = 0.967;
+    wanted = bent;
   else if (since < s(1.0))
-    wanted = 0.967 + (home - 0.967) * (since - s(0.3)) / s(0.7);
-  wanted = std::min(wanted, std::max(home, 0.967));
+    wanted = bent + (home - bent) * (since - s(0.3)) / s(0.7);
   straightness_ += std::min(1.0, h / s(0.05)) * (wanted - straightness_);
   heel_ += std::min(1.0, h / s(0.05)) * ((phase_ == Phase::shift ? 0.0 : 1.0) - heel_);
   landing_offset_ *= std::exp(-h / s(0.45));
@@ -472,10 +473,21 @@ Vec2 Standing::wanted_pressure(const View& view) const {
   return b * p + (1.0 - b) * start_com_;
 }
 
+/// Wanted of the pelvis. Feet that stay leave the hips: the trunk goes after the fall, which pushes the body
+/// back.
+Quat Standing::attitude_of(const View& view) const {
+  const Quat upright = Quat(Eigen::AngleAxisd(view.yaw, Vec3::UnitY())) * home_[0].rotation;
+  if (settings_.most_steps > 0) return upright;
+  const Vec2 out = view.icp - into(view.inner, view.icp);
+  const double lean = std::min(kHipLean / physique_.size * out.norm(), kMostLean) * active(view.time_s);
+  if (lean < 1e-6) return upright;
+  return Quat(Eigen::AngleAxisd(lean, Vec3(out.y(), 0.0, -out.x()).normalized())) * upright;
+}
+
 /// Height of the pelvis that the legs can hold.
 double Standing::pelvis_height(const Senses& senses, const View& view) const {
   double height = home_[0].translation.y();
-  const Quat attitude = Quat(Eigen::AngleAxisd(view.yaw, Vec3::UnitY())) * home_[0].rotation;
+  const Quat attitude = attitude_of(view);
   const double right = view.stands[0] && view.stands[1]
                            ? std::clamp((view.com - view.sole[0]).dot(view.sole[1] - view.sole[0]) /
                                             std::max((view.sole[1] - view.sole[0]).squaredNorm(), 1e-6),
@@ -493,6 +505,16 @@ double Standing::pelvis_height(const Senses& senses, const View& view) const {
     const double up = std::sqrt(std::max(reach * reach - aside * aside, 0.25 * reach * reach));
     height = std::min(height, ankle.y() + up - hip.y());
   }
+  // The foot in the air must reach its place.
+  if (phase_ == Phase::swing && view.time_s > swing_.lift_s + 0.5 * swing_.span_s) {
+    const Leg& l = leg(swing_.side);
+    const Vec3 hip = attitude * l.hip_in_pelvis;
+    const double aside = (on_ground(senses.pose[0].translation + hip) - swing_.to).norm();
+    const double reach = 0.985 * l.length_m();
+    height = std::min(
+        height,
+        l.home_ankle_m + std::sqrt(std::max(reach * reach - aside * aside, 0.25 * reach * reach)) - hip.y());
+  }
   return height;
 }
 
@@ -507,7 +529,7 @@ Standing::Wrench Standing::wrench_of(const Senses& senses, const View& view) con
                       kLiftDamping / physique_.tempo * senses.com_velocity.y();
   const double up =
       mass * std::clamp(physique_.gravity + b * lift, 0.4 * physique_.gravity, 1.7 * physique_.gravity);
-  const Quat upright = Quat(Eigen::AngleAxisd(view.yaw, Vec3::UnitY())) * home_[0].rotation;
+  const Quat upright = attitude_of(view);
   const Vec3 lean = log_rotation(senses.pose[0].rotation * upright.conjugate());
   Vec3 moment = b * strength * (-kUpright * lean - kUprightDamping * senses.angular_velocity[0]);
   const double most = kMostUpright * strength;
@@ -536,7 +558,7 @@ Standing::Wrench Standing::wrench_of(const Senses& senses, const View& view) con
 
 LegPosture Standing::standing_posture(const Senses& senses, const View& view, BodySide side,
                                       const Vec2& shift) const {
-  const Quat attitude = Quat(Eigen::AngleAxisd(view.yaw, Vec3::UnitY())) * home_[0].rotation;
+  const Quat attitude = attitude_of(view);
   const Vec3 pelvis = at_height(on_ground(senses.pose[0].translation) + shift, pelvis_y_);
   const Vec3& ankle = senses.pose[ukemi::index(leg(side).foot)].translation;
   return leg(side).reach(pelvis + attitude * leg(side).hip_in_pelvis, ankle, view.yaw, leg(side).yaw(senses));
@@ -597,7 +619,7 @@ void Standing::ask_standing_leg(const Senses& senses, const View& view, const Wr
   }
   const LegPosture now = standing_posture(senses, view, side, shove);
   const LegPosture next = standing_posture(senses, view, side, shove + moved);
-  const Quat attitude = Quat(Eigen::AngleAxisd(view.yaw, Vec3::UnitY())) * home_[0].rotation;
+  const Quat attitude = attitude_of(view);
   const double soft = 1.0 - 0.5 * (1.0 - std::clamp(2.0 * wrench.share[i], 0.15, 1.0));
   const std::array<Joint, 3> joints = {l.hip, l.knee, l.ankle};
   const std::array<Segment, 4> chain = {Segment::pelvis, l.thigh, l.shank, l.foot};

@@ -100,6 +100,7 @@ class Standing {
   // What is asked of the muscles.
   void ask(const Senses& senses, const View& view);
   Wrench wrench_of(const Senses& senses, const View& view) const;
+  Quat attitude_of(const View& view) const;
   Vec2 wanted_pressure(const View& view) const;
   double pelvis_height(const Senses& senses, const View& view) const;
   LegPosture standing_posture(const Senses& senses, const View& view, BodySide side, const Vec2& shift) const;

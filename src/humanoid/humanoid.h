@@ -121,6 +121,8 @@ struct StanceOptions {
   /// As people do: the weight 3 cm ahead of the ankles, a foot a little ahead, more weight on one leg, unequal arms.
   /// Otherwise even, the weight over the ankles.
   bool living = false;
+  /// A living stance that leans into a blow from there (front, right; unit), feet apart and knees bent. Zero: at ease.
+  Vec2 braced_against = Vec2::Zero();
   std::uint64_t seed = 0;  // varies a living stance; 0: the mean one
 };
 

@@ -69,15 +69,17 @@ struct Variety {
 /// Standing at ease. The feet are behind the hips by the 3 cm (0.035 leg lengths) that people stand ahead of
 /// their ankles; a foot is 4 cm ahead, one knee and one elbow more bent, the pelvis 1 cm over one leg. A seed
 /// may exchange left and right.
-Stance living_stance(std::uint64_t seed) {
+Stance living_stance(const Vec2& blow_from, std::uint64_t seed) {
   Variety vary(seed);
   Stance s = kStand;
+  const bool braced = !blow_from.isZero();
   const double ahead = vary.about(0.023, 0.012);
-  const double back = vary.about(0.035, 0.008);
-  const double aside = vary.about(0.010, 0.006);
-  s.pelvis_drop = vary.about(0.9955, 0.0015);
-  s.leg_l = {0.018 + aside, -back + ahead, vary.about(8.0, 4.0)};
-  s.leg_r = {0.018 - aside, -back - ahead, vary.about(11.0, 4.0)};
+  const double back = vary.about(0.035, 0.008) + 0.06 * blow_from.x();
+  const double aside = vary.about(0.010, 0.006) + 0.03 * blow_from.y();
+  const double apart = braced ? 0.06 : 0.018;
+  s.pelvis_drop = vary.about(braced ? 0.975 : 0.9955, 0.0015);
+  s.leg_l = {apart + aside, -back + ahead, vary.about(8.0, 4.0)};
+  s.leg_r = {apart - aside, -back - ahead, vary.about(11.0, 4.0)};
   s.pelvis_turn_deg = vary.about(-2.0, 2.5);
   s.trunk_turn_deg = vary.about(2.0, 3.0);
   s.neck_turn_deg = vary.about(-3.0, 5.0);
@@ -98,7 +100,7 @@ Stance living_stance(std::uint64_t seed) {
              0.0,
              0.0,
              0.0};
-  if (!vary.seeded || vary.random.uniform(0.0, 1.0) < 0.5) return s;
+  if (!vary.seeded || braced || vary.random.uniform(0.0, 1.0) < 0.5) return s;
   std::swap(s.leg_l, s.leg_r);
   std::swap(s.arm_l, s.arm_r);
   for (double* turn : {&s.pelvis_turn_deg, &s.trunk_turn_deg, &s.neck_turn_deg}) *turn = -*turn;
@@ -365,9 +367,10 @@ Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose 
                 const StanceOptions& stance) {
   if (kind == StartPose::rest) return stand_on_floor(character, humanoid, rest_on_feet(character, humanoid));
   const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
-  const BodyPose to = kind == StartPose::guard ? guard(character, humanoid, from)
-                                               : stand(character, humanoid, from,
-                                                       stance.living ? living_stance(stance.seed) : kStand);
+  const BodyPose to = kind == StartPose::guard
+                          ? guard(character, humanoid, from)
+                          : stand(character, humanoid, from,
+                                  stance.living ? living_stance(stance.braced_against, stance.seed) : kStand);
   return stand_on_floor(character, humanoid,
                         pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, to));
 }
