@@ -60,6 +60,13 @@ void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_t
     if (prop.poses.size() > frames) prop.poses.resize(frames);
 }
 
+/// Who gets up is given time to come to rest first.
+double simulated_s(const BakeSettings& settings) {
+  constexpr double kWithGetUp_s = 12.0;
+  const bool given = settings.simulation.duration_s != SimulationSettings{}.duration_s;
+  return settings.get_up_s && !given ? kWithGetUp_s : settings.simulation.duration_s;
+}
+
 /// Farthest that a segment is from another pose's, m (a radian counts as 0.5 m).
 double difference(const BodyPose& a, const BodyPose& b) {
   constexpr double kPerRadian_m = 0.5;
@@ -127,24 +134,33 @@ void add_marks(const SimulationFigures& figures, const ControllerReport& behavio
     clip.marks.push_back({"rest", *figures.rest_time_s});
 }
 
+void add_get_up_marks(const GetUpTimes& times, Clip& clip) {
+  clip.marks.push_back({"get_up", times.begins_s});
+  for (const GetUpPhase& phase : times.phases) clip.marks.push_back({phase.name, phase.time_s});
+}
+
 /// From the simulated segments to the clip with all that stands before and behind them.
-void make_timeline(const Character& character, const BakeSettings& settings, Trajectory trajectory,
-                   BakedClip& outcome) {
+Status make_timeline(const Character& character, const BakeSettings& settings, Trajectory trajectory,
+                     BakedClip& outcome) {
   const Prepared& prepared = outcome.prepared;
   const Actor actor = prepared.actor(character);
   const double gravity = settings.simulation.gravity;
-  outcome.ground_lift_max_m =
-      lift_skin_above_floor(trajectory.frames, trajectory.fps,
-                            outermost_skin(character, prepared.humanoid, prepared.start.pose,
-                                           prepared.start.segments, prepared.body));
+  const auto skin = outermost_skin(character, prepared.humanoid, prepared.start.pose, prepared.start.segments,
+                                   prepared.body);
+  outcome.ground_lift_max_m = lift_skin_above_floor(trajectory.frames, trajectory.fps, skin);
+  if (settings.get_up_s)
+    outcome.get_up = add_get_up(
+        prepared.body, prepared.range, prepared.start.state.segments, skin,
+        {settings.get_up_style, static_cast<std::uint64_t>(settings.seed), trajectory.fps}, trajectory);
   outcome.timeline = timeline_of(actor, std::move(trajectory), prepared.reaction, outcome.resample_error);
   Clip& clip = outcome.timeline.clip;
   add_marks(outcome.figures, outcome.behaviour, clip);
+  if (outcome.get_up) add_get_up_marks(*outcome.get_up, clip);
   if (settings.extra_bones_play) play_extra_bones(actor, clip);
   if (settings.smooth_hz) smooth(clip, *settings.smooth_hz);
   add_lead(actor, prepared.scene, gravity, settings.lead_s, outcome.timeline);
-  if (settings.recover_s)
-    add_recovery(actor, *settings.recover_s, settings.recover_to, gravity, outcome.timeline);
+  if (!settings.recover_s) return Done{};
+  return add_recovery(actor, *settings.recover_s, settings.recover_to, gravity, outcome.timeline);
 }
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
@@ -253,20 +269,28 @@ Result<BakedClip> bake(const Character& character, const BakeSettings& settings,
   BakedClip outcome;
   outcome.prepared = std::move(*prepared);
   outcome.timings_s.load = watch.lap();
+  SimulationSettings simulated = settings.simulation;
+  simulated.duration_s = simulated_s(settings);
   auto simulation =
-      simulate(simulation_input(outcome.prepared, outcome.prepared.scene, settings.simulation), diagnostics);
+      simulate(simulation_input(outcome.prepared, outcome.prepared.scene, simulated), diagnostics);
   if (!simulation) return simulation.error();
   outcome.limits = simulation->limits;
   outcome.figures = std::move(simulation->figures);
   outcome.behaviour = std::move(simulation->behaviour);
   Trajectory& trajectory = simulation->trajectory;
   const bool blow = outcome.prepared.scene.kind != SceneKind::none;
-  if (settings.until_rest && blow) trim_still_tail(trajectory, outcome.figures.rest_time_s, settings.hold_s);
+  const bool gets_up =
+      settings.get_up_s && lying_of(outcome.prepared.body, trajectory.frames.back()) != Lying::upright;
+  const auto& rest_s = outcome.figures.rest_time_s;
+  if ((settings.until_rest && blow) || gets_up)
+    trim_still_tail(trajectory, rest_s, gets_up ? *settings.get_up_s : settings.hold_s);
+  if (gets_up && rest_s) hold_last_frame(*rest_s + *settings.get_up_s, trajectory);
   if (outcome.prepared.behaviour.kind != Behaviour::limp)
     end_in_start_pose(outcome.prepared.start.state.segments, outcome.behaviour, trajectory);
   outcome.timings_s.simulate = watch.lap();
   if (const Status status = check_clip_size(character, settings, trajectory); !status) return status.error();
-  make_timeline(character, settings, std::move(trajectory), outcome);
+  if (const Status status = make_timeline(character, settings, std::move(trajectory), outcome); !status)
+    return status.error();
   outcome.timings_s.resample = watch.lap();
   outcome.timings_s.total = watch.total();
   return outcome;

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bake/prepared.h"
 #include "clip/timeline.h"
 #include "export/export.h"
+#include "rise/getting_up.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {
@@ -24,6 +26,7 @@ struct BakedClip {
   LimitFigures limits;
   SimulationFigures figures;
   ControllerReport behaviour;
+  std::optional<GetUpTimes> get_up;
   Timeline timeline;               // its still tail trimmed, lead and recovery added
   double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
   ResampleError resample_error;

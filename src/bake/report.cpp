@@ -54,6 +54,7 @@ Json settings_json(const BakeSettings& settings, const BakedClip& outcome) {
   json["until_rest"] = settings.until_rest;
   json["hold_s"] = settings.until_rest ? Json(settings.hold_s) : Json(nullptr);
   json["lead_s"] = outcome.timeline.impact_s;
+  json["get_up_s"] = or_null(settings.get_up_s);
   json["recover_s"] = or_null(settings.recover_s);
   json["recover_to"] =
       settings.recover_s ? Json(settings.recover_to == RecoverTo::clip ? "clip" : "rest") : Json(nullptr);
@@ -168,7 +169,10 @@ Json response_json(const BakedClip& outcome) {
   json["foot_slide_max_m"] = response.foot_slide_max_m;
   json["muscle_torque_max_share"] = muscles ? Json(figures.muscle_share_max) : Json(nullptr);
   json["muscle_work_j"] = muscles ? Json(figures.muscle_work_j) : Json(nullptr);
-  json["get_up"] = nullptr;
+  json["get_up"] = outcome.get_up ? Json{{"begins_s", outcome.get_up->begins_s + outcome.timeline.impact_s},
+                                         {"stands_s", outcome.get_up->stands_s + outcome.timeline.impact_s},
+                                         {"route", outcome.get_up->route}}
+                                  : Json(nullptr);
   json["travel_m"] = numbers(response.travel_m);
   json["turn_deg"] = response.turn_deg;
   json["delivered_n_s"] = figures.delivered_n_s;

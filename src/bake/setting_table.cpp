@@ -238,6 +238,12 @@ Setting with_unset(Setting setting, std::string unset) {
   return setting;
 }
 
+/// A setting whose value may be left out on the command line.
+Setting bare(Setting setting, std::string value) {
+  setting.bare = std::move(value);
+  return setting;
+}
+
 Settings hit_settings() {
   using S = BakeSettings;
   return {
@@ -353,6 +359,19 @@ Settings behaviour_settings_table() {
               "latency", "S", Range{0.0, 2.0}, "time from the blow to the first reaction of the balance",
               [](auto& s) -> auto& { return s.latency_s; }),
           "0.10, dazed 0.20"),
+      bare(with_unset(number<S>(
+                          "get-up", "S", Range{0.0, 60.0},
+                          "gets up from the floor into the start pose, after lying still so long",
+                          [](auto& s) -> auto& { return s.get_up_s; }),
+                      "stays down"),
+           "0.8"),
+      choice<S, GetUpStyle>(
+          "get-up-style",
+          {{"plain", GetUpStyle::plain},
+           {"quick", GetUpStyle::quick},
+           {"heavy", GetUpStyle::heavy},
+           {"hurt", GetUpStyle::hurt}},
+          "how", [](auto& s) -> auto& { return s.get_up_style; }),
       number<S>(
           "seed", "N", Range{0.0, 4294967295.0},
           "another take of the same blow: stance, latency, arms and steps vary as people do; 0: the mean of "
@@ -427,7 +446,8 @@ Settings clip_settings() {
   using S = BakeSettings;
   return {
       number<S>(
-          "duration", "S", Range{0.0, 60.0, true}, "length at most",
+          "duration", "S", Range{0.0, 60.0, true},
+          "length at most, until he gets up (with --get-up 12 unless given)",
           [](auto& s) -> auto& { return s.simulation.duration_s; }),
       on_off<S>(
           "until-rest", "end the clip once everything rests", [](auto& s) -> auto& { return s.until_rest; },

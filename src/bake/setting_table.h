@@ -32,6 +32,7 @@ struct SettingOf {
   std::string help;                // what it does
   std::string opposite;            // on_off: what false does
   std::string unset;               // default where `get` gives none: "found out"; may be empty
+  std::string bare;                // value where the command line names the setting alone; may be empty
   Range range;                     // number
   std::vector<std::string> words;  // choice
   /// Takes what the user wrote (a list: one entry at a time, added). Errors: usage; `what` does not name the

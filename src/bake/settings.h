@@ -16,6 +16,7 @@
 #include "humanoid/humanoid.h"
 #include "render/render.h"
 #include "restrict/range_of_motion.h"
+#include "rise/get_up.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {
@@ -46,7 +47,9 @@ struct BakeSettings {
   double most_steps = 6;               // of a recovery
   double muscle = 1.0;                 // strength, of a healthy adult's
   std::optional<double> latency_s;     // unless given: the behaviour's
-  double seed = 0;                     // varies stance, latency, arms and steps; 0: the mean of all
+  std::optional<double> get_up_s;      // gets up after lying so long; unless given: stays down
+  GetUpStyle get_up_style = GetUpStyle::plain;
+  double seed = 0;  // varies stance, latency, arms and steps; 0: the mean of all
   // method
   std::string region = "human";        // name or file, see load_range_of_motion
   std::optional<RangeOfMotion> range;  // in place of the region's

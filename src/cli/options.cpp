@@ -191,8 +191,16 @@ void Options::arguments(const std::string& name, std::vector<std::string>& targe
 }
 
 void Options::custom(const std::string& names, const std::string& value,
-                     std::function<Status(const std::string&)> take, const std::string& help, bool list) {
-  parser_->declare(names, value, with_notes(help, {list ? "may be repeated" : ""}), list, std::move(take));
+                     std::function<Status(const std::string&)> take, const std::string& help, bool list,
+                     const std::string& bare) {
+  const auto take_bare = [take, bare](const std::string& text) {
+    return take(!bare.empty() && (text.empty() || text == "true") ? bare : text);
+  };
+  CLI::Option* option = parser_->declare(
+      names, value,
+      with_notes(help, {list ? "may be repeated" : "", bare.empty() ? "" : bare + " where S is left out"}),
+      list, take_bare);
+  if (!bare.empty()) option->expected(0, 1);
 }
 
 void Options::text(const std::string& names, const std::string& value, std::string& target,

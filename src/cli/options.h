@@ -60,9 +60,10 @@ class Options {
   void on_off(const std::string& name, bool on, std::function<void(bool)> take, const std::string& help,
               const std::string& opposite);
   /// Any value that `take` accepts; repeatable where `list`. What `take` refuses is told with the option's
-  /// name before it.
+  /// name before it. `bare`: the value where none follows; empty: one must.
   void custom(const std::string& names, const std::string& value,
-              std::function<Status(const std::string&)> take, const std::string& help, bool list = false);
+              std::function<Status(const std::string&)> take, const std::string& help, bool list = false,
+              const std::string& bare = "");
 
   enum class Outcome { run, help };
   /// Takes the arguments after the command's name. Errors: usage.

@@ -26,7 +26,8 @@ void declare(Options& options, const SettingOf<Target>& setting, Target& target)
   const auto take = [&setting, &target](const std::string& text) { return setting.set(target, text); };
   const std::string option = fmt::format("--{}", setting.name);
   if (setting.kind != Kind::on_off)
-    return options.custom(option, setting.value, take, help_of(setting, target), setting.kind == Kind::list);
+    return options.custom(option, setting.value, take, help_of(setting, target), setting.kind == Kind::list,
+                          setting.bare);
   const auto turn = [&setting, &target](bool on) {  // both words are legal
     static_cast<void>(setting.set(target, on ? "true" : "false"));
   };

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/errors.h"
 #include "body/ground.h"
 #include "clip/ground_motion.h"
 #include "clip/lead.h"
@@ -47,13 +48,6 @@ double lowest(const BodyPose& frame, const SegmentVertices& skin) {
 
 /// 0 to 1 with still ends: no velocity, no acceleration.
 double smooth_step(double x) { return x * x * x * (10.0 + x * (6.0 * x - 15.0)); }
-
-/// Time of a motion that stands still at 0 and runs as it should from `duration_s` on, which it reaches in
-/// time.
-double gathered(double time_s, double duration_s) {
-  const double x = std::clamp(time_s / duration_s, 0.0, 1.0);
-  return duration_s * (0.5 + x * x * x * x * (2.5 + x * (x - 3.0)));  // 0.5 + integral of smooth_step
-}
 
 /// Where an offset with a velocity is, on its way to nothing (after Bollo, "Inertialization", GDC 2018).
 struct Fading {
@@ -106,8 +100,7 @@ bool is_down(const BodyPose& figure, const BodyPose& target, double floor_m) {
 }
 
 /// The move that puts the target where the figure is.
-GroundMove place_for(const BodyPose& target, const BodyPose& figure, bool down) {
-  if (down) return ground_move({target[index(Segment::pelvis)]}, {figure[index(Segment::pelvis)]});
+GroundMove place_for(const BodyPose& target, const BodyPose& figure) {
   const int l = index(Segment::foot_l), r = index(Segment::foot_r);
   return ground_move({target[l], target[r]}, {figure[l], figure[r]});
 }
@@ -157,25 +150,25 @@ TimelinePart part_of(const Actor& actor, const SegmentFrames& frames, std::vecto
 
 }  // namespace
 
-void add_recovery(const Actor& actor, double seconds, RecoverTo to, double gravity, Timeline& timeline) {
+Status add_recovery(const Actor& actor, double seconds, RecoverTo to, double gravity, Timeline& timeline) {
   const Skeleton& skeleton = actor.character.skeleton;
   const Humanoid& humanoid = actor.humanoid;
   Clip& clip = timeline.clip;
   const int frames = frames_in(seconds, clip.fps);
-  if (frames <= 0 || clip.frames.empty()) return;
+  if (frames <= 0 || clip.frames.empty()) return Done{};
   const double duration_s = frames / clip.fps;
   const double cut_s = clip.duration_s() - timeline.impact_s;
   const Pose last = clip.frames.back();
   const Pose before = clip.frames.size() > 1 ? clip.frames[clip.frames.size() - 2] : last;
   const BodyPose figure = segments_of(skeleton, humanoid, last);
-  const bool down = is_down(figure, segments_of(skeleton, humanoid, actor.start.pose), actor.start.floor_m);
-  // Who lies does not walk on: the clip gathers way while he gets up.
+  if (is_down(figure, segments_of(skeleton, humanoid, actor.start.pose), actor.start.floor_m))
+    return usage_error("--recover blends a standing body back, and this one ends on the floor",
+                       "add --get-up in its place");
   const auto unplaced = [&](double time_s) {
     if (to != RecoverTo::clip) return actor.start.pose;
-    return unhit_pose(skeleton, humanoid, actor.start,
-                      cut_s + (down ? gathered(time_s, duration_s) : time_s));
+    return unhit_pose(skeleton, humanoid, actor.start, cut_s + time_s);
   };
-  const GroundMove place = place_for(segments_of(skeleton, humanoid, unplaced(0.0)), figure, down);
+  const GroundMove place = place_for(segments_of(skeleton, humanoid, unplaced(0.0)), figure);
   const auto target = [&](double time_s) { return place.moved(skeleton, humanoid, unplaced(time_s)); };
   const Blend blend(before, last, target(-1.0 / clip.fps), target(0.0), clip.fps);
   std::vector<Pose> poses{last};
@@ -185,6 +178,7 @@ void add_recovery(const Actor& actor, double seconds, RecoverTo to, double gravi
   poses.erase(poses.begin());
   clip.marks.push_back({"recover", clip.duration_s()});
   timeline.append(part_of(actor, segment_frames, std::move(poses), timeline, gravity));
+  return Done{};
 }
 
 }  // namespace ukemi

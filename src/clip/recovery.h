@@ -9,10 +9,9 @@ namespace ukemi {
 enum class RecoverTo { rest, clip };
 
 /// Blends from the last frame, with its velocities, to `to` in `seconds` (rounded up to whole frames).
-/// The figure recovers where it is: who stands keeps his feet, who lies gets up towards his feet or head, and
-/// the clip he goes back to gathers way meanwhile; at the end it is where it would be without the blow.
-/// The lowest skin point goes evenly from its height to that of the pose or clip, so that nothing sinks into
-/// the floor or floats.
-void add_recovery(const Actor& actor, double seconds, RecoverTo to, double gravity, Timeline& timeline);
+/// The figure recovers where it stands and keeps its feet; at the end of a clip it is where it would be
+/// without the blow. Errors: usage (it lies, sits or kneels: no blend gets a body up). The lowest skin point
+/// goes evenly from its height to that of the pose or clip, so that nothing sinks into the floor or floats.
+Status add_recovery(const Actor& actor, double seconds, RecoverTo to, double gravity, Timeline& timeline);
 
 }  // namespace ukemi

@@ -14,9 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // In the order of the pipeline.
-constexpr std::string_view kRooms[] = {"base",     "load",   "humanoid", "restrict", "body",   "physics",
-                                       "simulate", "behave", "export",   "render",   "clip",   "judge",
-                                       "bake",     "check",  "study",    "batch",    "review", "cli"};
+constexpr std::string_view kRooms[] = {
+    "base",   "load", "humanoid", "restrict", "body",  "physics", "simulate", "behave", "rise", "export",
+    "render", "clip", "judge",    "bake",     "check", "study",   "batch",    "review", "cli"};
 
 // Rooms that never include each other.
 const std::vector<std::vector<std::string_view>> kApart = {{"export", "render"},
