@@ -60,11 +60,10 @@ void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_t
     if (prop.poses.size() > frames) prop.poses.resize(frames);
 }
 
-/// Who gets up is given time to come to rest first.
+/// Who gets up is given 12 s to come to rest first, unless told.
 double simulated_s(const BakeSettings& settings) {
-  constexpr double kWithGetUp_s = 12.0;
   const bool given = settings.simulation.duration_s != SimulationSettings{}.duration_s;
-  return settings.get_up_s && !given ? kWithGetUp_s : settings.simulation.duration_s;
+  return settings.get_up_s && !given ? 12.0 : settings.simulation.duration_s;
 }
 
 /// Farthest that a segment is from another pose's, m (a radian counts as 0.5 m).
@@ -132,11 +131,6 @@ void add_marks(const SimulationFigures& figures, const ControllerReport& behavio
   if (fall && *fall <= end_s) clip.marks.push_back({"fall_begins", *fall});
   if (figures.rest_time_s && *figures.rest_time_s <= end_s)
     clip.marks.push_back({"rest", *figures.rest_time_s});
-}
-
-void add_get_up_marks(const GetUpTimes& times, Clip& clip) {
-  clip.marks.push_back({"get_up", times.begins_s});
-  for (const GetUpPhase& phase : times.phases) clip.marks.push_back({phase.name, phase.time_s});
 }
 
 /// From the simulated segments to the clip with all that stands before and behind them.

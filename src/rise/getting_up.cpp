@@ -42,4 +42,9 @@ std::optional<GetUpTimes> add_get_up(const ArticulatedBody& body, const RangeOfM
   return times;
 }
 
+void add_get_up_marks(const GetUpTimes& times, Clip& clip) {
+  clip.marks.push_back({"get_up", times.begins_s});
+  for (const GetUpPhase& phase : times.phases) clip.marks.push_back({phase.name, phase.time_s});
+}
+
 }  // namespace ukemi

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/animation.h"
 #include "base/result.h"
 #include "body/trajectory.h"
 #include "rise/get_up.h"
@@ -28,5 +29,8 @@ std::optional<GetUpTimes> add_get_up(const ArticulatedBody& body, const RangeOfM
                                      const BodyPose& standing,
                                      const PerSegment<std::vector<Vec3>>& outermost_skin,
                                      const GetUpSettings& settings, Trajectory& trajectory);
+
+/// "get_up", then every phase.
+void add_get_up_marks(const GetUpTimes& times, Clip& clip);
 
 }  // namespace ukemi
