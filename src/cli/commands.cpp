@@ -19,7 +19,7 @@ struct Command {
   int (*run)(const Arguments&);
 };
 
-constexpr std::array<Command, 11> kCommands = {{
+constexpr std::array<Command, 12> kCommands = {{
     {"bake", "CHARACTER", "one hit reaction of a character: clip, contact sheet, report", bake_command},
     {"batch", "RECIPE", "many reactions, in many processes, resumable", batch_command},
     {"recipe", "", "prints a commented recipe for batch", recipe_command},
@@ -28,6 +28,7 @@ constexpr std::array<Command, 11> kCommands = {{
     {"render", "FILE...", "contact sheet or moving picture of clips in files", render_command},
     {"review", "DIR", "the web page to judge a folder of reactions by", review_command},
     {"compare", "CHARACTER", "the same random hits with every method of joint restriction", compare_command},
+    {"judge", "CLIP", "which criteria of human motion a clip meets, and its score", judge_command},
     {"diff", "A B", "compares two clips joint by joint", diff_command},
     {"rom", "", "range of motion of the joints, and a clip's path through it, as picture or text",
      rom_command},

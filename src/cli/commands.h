@@ -12,6 +12,7 @@ int bake_command(const Arguments& arguments);
 int batch_command(const Arguments& arguments);
 int recipe_command(const Arguments& arguments);
 int inspect_command(const Arguments& arguments);
+int judge_command(const Arguments& arguments);
 int render_command(const Arguments& arguments);
 int compare_command(const Arguments& arguments);
 int diff_command(const Arguments& arguments);

@@ -20,7 +20,7 @@ TEST_F(Refusal, OfNoOrUnknownCommands) {
   expect_refused({}, kMustChange, "no command");
   expect_refused({"bkae"}, kMustChange, "unknown command 'bkae'\n  fix: did you mean 'bake'?");
   expect_refused({"xyzzyx"}, kMustChange,
-                 "choose one of: bake batch recipe inspect render review compare diff");
+                 "choose one of: bake batch recipe inspect render review compare judge");
   expect_refused({"--vresion"}, kMustChange, "unknown option '--vresion'");
 }
 
@@ -166,8 +166,8 @@ TEST_F(Help, GoesToStdoutWithStatusZero) {
 TEST_F(Help, NamesEveryCommandAndOnlyThose) {
   const std::string text = run({"--help"}).out;
   for (const char* command :
-       {"bake CHARACTER", "inspect FILE", "render FILE", "diff A B", "compare CHARACTER", "review DIR", "rom",
-        "calibrate FILE...", "batch RECIPE", "recipe", "help TOPIC"})
+       {"bake CHARACTER", "inspect FILE", "render FILE", "judge CLIP", "diff A B", "compare CHARACTER",
+        "review DIR", "rom", "calibrate FILE...", "batch RECIPE", "recipe", "help TOPIC"})
     EXPECT_NE(text.find(command), std::string::npos) << command;
 }
 
@@ -196,7 +196,7 @@ TEST_F(Help, TellsDefaultsAndLegalRanges) {
 }
 
 TEST_F(Help, LinesFitATerminal) {
-  for (const char* command : {"bake", "batch", "inspect", "render", "diff"}) {
+  for (const char* command : {"bake", "batch", "inspect", "judge", "render", "diff"}) {
     const std::string text = run({command, "--help"}).out;
     std::size_t begin = 0, lines = 0;
     for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
