@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <thread>
 #include <vector>
 
 #include "base/errors.h"
 #include "base/files.h"
+#include "base/parallel.h"
 #include "base/version.h"
 #include "review/clip.h"
 #include "review/json.h"
@@ -169,47 +168,20 @@ Status make_one(const fs::path& folder, const ReviewSource& source, PageFolder& 
   return write_clip(source, page, made);
 }
 
-/// An exception must not leave its thread.
-Status make_guarded(const fs::path& folder, const ReviewSource& source, PageFolder& page, Made& made) {
-  try {
-    return make_one(folder, source, page, made);
-  } catch (const std::exception& exception) {
-    return Error{ErrorKind::internal,
-                 (folder / source.clip).string(),
-                 0,
-                 0,
-                 "",
-                 std::string("unexpected failure: ") + exception.what(),
-                 "this is a bug of the program; report it with the file"};
-  }
-}
-
-/// Runs make_one on every source. Errors: the first one.
+/// Runs make_one on every source. Errors: those of make_one; an exception names the clip.
 Status make_all(const fs::path& folder, const std::vector<ReviewSource>& sources, PageFolder& page,
                 const ReviewSettings& settings, const std::function<void(int, int)>& progress,
                 std::vector<Made>& made) {
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  std::optional<Error> failed;
-  int done = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < sources.size(); i = next++) {
-      const Status status = make_guarded(folder, sources[i], page, made[i]);
-      const std::lock_guard lock(mutex);
-      if (failed) return;
-      if (!status) {
-        failed = status.error();
-        return;
-      }
-      if (progress) progress(++done, static_cast<int>(sources.size()));
-    }
+  const auto work = [&](std::size_t i) -> Status {
+    Status status = without_exceptions([&] { return make_one(folder, sources[i], page, made[i]); });
+    if (status || !status.error().file.empty()) return status;
+    Error error = status.error();
+    error.file = (folder / sources[i].clip).string();
+    return error;
   };
-  std::vector<std::thread> others;
-  for (int i = 1; i < settings.threads; ++i) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
-  if (failed) return *failed;
-  return Done{};
+  return for_each_parallel(sources.size(), settings.threads, work, [&](int done) {
+    if (progress) progress(done, static_cast<int>(sources.size()));
+  });
 }
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <ctime>
-#include <mutex>
-#include <thread>
 
+#include "base/parallel.h"
 #include "base/random.h"
 
 namespace ukemi {
@@ -37,19 +35,15 @@ struct Run {
   bool exploded = false;
   double simulated_s = 0.0;
   double cpu_s = 0.0;
-  std::optional<Error> refused;
 };
 
-Run timed_run(const Comparison& comparison, const Method& method, const RandomHit& hit) {
+Result<Run> timed_run(const Comparison& comparison, const Method& method, const RandomHit& hit) {
   const Quat& pelvis = comparison.prepared.start.segments[index(Segment::pelvis)].rotation;
   Run run;
   const double before = thread_seconds();
   auto trial = run_scene(comparison, method, scene_of(hit, pelvis));
   run.cpu_s = thread_seconds() - before;
-  if (!trial) {
-    run.refused = trial.error();
-    return run;
-  }
+  if (!trial) return trial.error();
   run.limits = trial->result.limits;
   run.figures = trial->result.figures;
   run.excesses = std::move(trial->excesses);
@@ -59,22 +53,18 @@ Run timed_run(const Comparison& comparison, const Method& method, const RandomHi
 }
 
 /// All hits with one method, in the order of the hits.
-std::vector<Run> run_hits(const Comparison& comparison, const Method& method,
-                          const std::function<void()>& after_each) {
+Result<std::vector<Run>> run_hits(const Comparison& comparison, const Method& method,
+                                  const std::function<void()>& after_each) {
   std::vector<Run> runs(comparison.hits.size());
-  std::atomic<std::size_t> next = 0;
-  std::mutex mutex;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < runs.size(); i = next++) {
-      runs[i] = timed_run(comparison, method, comparison.hits[i]);
-      const std::lock_guard lock(mutex);
-      after_each();
-    }
+  const auto work = [&](std::size_t i) -> Status {
+    auto run = timed_run(comparison, method, comparison.hits[i]);
+    if (!run) return run.error();
+    runs[i] = std::move(*run);
+    return Done{};
   };
-  std::vector<std::thread> others;
-  for (int i = 1; i < comparison.settings.threads; ++i) others.emplace_back(work);
-  work();
-  for (std::thread& other : others) other.join();
+  const Status status =
+      for_each_parallel(runs.size(), comparison.settings.threads, work, [&](int) { after_each(); });
+  if (!status) return status.error();
   return runs;
 }
 
@@ -235,13 +225,12 @@ Result<Comparison> compare(const std::string& character, const Character& loaded
   const int total = settings.hits * static_cast<int>(methods.size());
   int done = 0;
   for (const Method& method : methods) {
-    const std::vector<Run> runs = run_hits(comparison, method, [&] {
+    const auto runs = run_hits(comparison, method, [&] {
       ++done;
       if (progress) progress(done, total);
     });
-    for (const Run& run : runs)
-      if (run.refused) return *run.refused;
-    comparison.methods.push_back(figures_of(method, runs));
+    if (!runs) return runs.error();
+    comparison.methods.push_back(figures_of(method, *runs));
   }
   return comparison;
 }

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <thread>
 
+#include "base/parallel.h"
 #include "load/character_path.h"
 #include "load/load.h"
 #include "study/compare_pictures.h"
@@ -112,19 +111,17 @@ TEST(RandomHits, KeepTheMannequinHumanWithDefaultSettings) {
   const std::vector<RandomHit> hits = random_hits(CompareSettings{}.seed, kHitsOnTheMannequin);
   const Quat& pelvis = prepared->start.segments[index(Segment::pelvis)].rotation;
   std::vector<std::optional<Trial>> trials(hits.size());
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < hits.size(); i = next++) {
-      Diagnostics unsaid;
-      const Scene scene = scene_of(hits[i], pelvis);
-      const SimulationSettings settings;
-      auto trial = simulate_trial(simulation_input(*prepared, scene, settings), prepared->range, unsaid);
-      if (trial) trials[i] = std::move(*trial);
-    }
+  const auto work = [&](std::size_t i) -> Status {
+    Diagnostics unsaid;
+    const Scene scene = scene_of(hits[i], pelvis);
+    const SimulationSettings settings;
+    auto trial = simulate_trial(simulation_input(*prepared, scene, settings), prepared->range, unsaid);
+    if (!trial) return trial.error();
+    trials[i] = std::move(*trial);
+    return Done{};
   };
-  std::thread other(work);
-  work();
-  other.join();
+  const Status status = for_each_parallel(hits.size(), 2, work);
+  ASSERT_TRUE(status) << status.error().message();
   for (std::size_t i = 0; i < hits.size(); ++i) {
     SCOPED_TRACE(fmt::format("hit {}: {}", i, describe(hits[i])));
     ASSERT_TRUE(trials[i]);
@@ -164,6 +161,18 @@ TEST(Compare, RunsTheMethodsOfThePaperAndOurs) {
   }
   EXPECT_EQ(methods[3].simulation.active_k, 20.0);
   EXPECT_EQ(methods[4].simulation.active_k, 1.0);
+}
+
+TEST(Compare, AnExceptionInAThreadEndsTheComparisonNotTheProgram) {
+  CompareSettings settings = short_settings();
+  settings.duration_s = 0.02;
+  settings.threads = 2;
+  Diagnostics diagnostics;
+  const auto refused = compare("mannequin", mannequin(), settings, diagnostics,
+                               [](int, int) { throw std::runtime_error("no terminal"); });
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::internal);
+  EXPECT_EQ(refused.error().what, "unexpected failure: no terminal");
 }
 
 TEST(Compare, FindsJointsOutsideTheirRangeWithStopsPerAxisAndNoneWithOurs) {
