@@ -78,9 +78,11 @@ TEST_F(Schema, ReportsOfEveryKindOfBake) {
     return said("report", words);
   };
   EXPECT_GT(with({"--duration", "1"})["response"]["steps"].size(), 0u);
-  const Json limp = with({"--behaviour", "limp", "--hit", "head", "--duration", "1.2", "--recover", "0.3",
-                          "--lead", "0.2", "--keys", "all", "--limits", "axis", "--until-rest"});
+  const Json limp = with({"--behaviour", "limp", "--hit", "head", "--duration", "1.2", "--lead", "0.2",
+                          "--keys", "all", "--limits", "axis", "--until-rest"});
   EXPECT_FALSE(limp["response"]["pelvis_contact"].is_null());
+  with({"--preset", "football", "--recover", "0.3"});
+  EXPECT_FALSE(with({"--behaviour", "limp", "--get-up", "0.5"})["response"]["get_up"].is_null());
   EXPECT_FALSE(with({"--clip", "walk", "--at", "0.4", "--duration", "0.3", "--root-motion",
                      "root"})["clip"]["root_curve_m"]
                    .is_null());
