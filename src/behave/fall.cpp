@@ -19,14 +19,17 @@ constexpr double kLeastShare = 0.12;      // of full effort that a joint's dampe
 constexpr double kLooseDamping_s = 0.03;  // damper of what lets go, times the full torque
 constexpr double kCalm_m_s = 0.14, kCalmTurning = 0.7, kCalmFor_s = 0.15;
 constexpr double kSlow_m_s = 0.5, kSlowFor_s = 0.3;
+constexpr double kLongestArch_s = 2.0;  // after landing a body may hang between knees and chest
 constexpr double kRest_m_s = 0.03, kRestTurning = 0.15, kRestFor_s = 0.25;
 constexpr double kBreathesOn_s = 1.0;   // after rest
 constexpr double kFullTorqueAt = 0.35;  // rad
 constexpr double kLookAhead_s = 0.25;   // a seated trunk that will have sunk then goes on to lie
 constexpr double kStaysSeated = 0.42;   // of its y axis
 constexpr double kChoosesFor_s = 1.2;   // after landing
-constexpr double kStill_s = 0.5;        // until a settled body's joints hold still
-constexpr double kStillDamping = 10.0;  // times that of lying
+constexpr double kTouching = 1.0, kHardTouching = 0.6;  // share of an arm's effort; more where the shoulder
+constexpr double kHardSink_m_s = 2.0;                   // sinks faster than this
+constexpr double kStill_s = 0.5;                        // until a settled body's joints hold still
+constexpr double kStillDamping = 20.0;                  // times that of lying
 
 bool is_arm(Joint j) { return j >= Joint::clavicle_l && j <= Joint::wrist_r; }
 
@@ -205,7 +208,7 @@ void Falling::settle_parts(const Senses& senses) {
   if (pose_ == EndPose::seated) return;  // the arms prop
   for (const BodySide side : kSides) {
     const ArmLanding& arm = landing_.arm(side);
-    const bool braked = arm.braked_s && time_s - *arm.braked_s > (prone ? 0.03 : 0.12) * body_.tau;
+    const bool braked = !prone && arm.braked_s && time_s - *arm.braked_s > 0.12 * body_.tau;
     if (braked || (lies && since_s > 0.2) || since_s > 0.7)
       begin(side == BodySide::left ? Part::arm_l : Part::arm_r, prone ? 0.45 : 0.7);
   }
@@ -221,7 +224,10 @@ void Falling::watch_calm(const Senses& senses, double h) {
   calm_s_ = finished && speed < kCalm_m_s && turning < kCalmTurning ? calm_s_ + h : 0.0;
   slow_s_ = finished && speed < kSlow_m_s ? slow_s_ + h : 0.0;
   if (!landing_.landed_s()) return;
-  if (!report_.settled_s && (calm_s_ > kCalmFor_s || slow_s_ > kSlowFor_s)) report_.settled_s = senses.time_s;
+  const bool lies = on_floor(senses, Segment::pelvis) || on_floor(senses, Segment::abdomen) ||
+                    senses.time_s > *landing_.landed_s() + kLongestArch_s * body_.tau;
+  if (!report_.settled_s && lies && (calm_s_ > kCalmFor_s || slow_s_ > kSlowFor_s))
+    report_.settled_s = senses.time_s;
   still_s_ = report_.settled_s && speed < kRest_m_s && turning < kRestTurning ? still_s_ + h : 0.0;
   if (!rest_s_ && still_s_ > kRestFor_s) rest_s_ = senses.time_s;
 }
@@ -318,9 +324,15 @@ Falling::Effort Falling::arm_effort(Joint joint, double time_s) const {
   if (!protects(side)) return {0.05, 0.12};
   const ArmLanding& arm = landing_.arm(side);
   if (!arm.touched_s) return {wrist ? 2.5 : 0.8, 0.12};
-  Effort effort{wrist ? 2.5 : 1.0, 0.30};
-  if (arm.braked_s && pose_ != EndPose::seated)
-    effort.share *= 1.0 - 0.5 * min_jerk((time_s - *arm.braked_s - 0.2 * body_.tau) / (0.6 * body_.tau));
+  Effort effort{
+      wrist ? 2.5
+            : kTouching + kHardTouching * std::clamp(arm.sink_m_s / body_.tau - kHardSink_m_s, 0.0, 1.0),
+      0.30};
+  if (!arm.braked_s || pose_ == EndPose::seated) return effort;
+  const double since_s = (time_s - *arm.braked_s) / body_.tau;
+  // A forward fall goes on to the belly; else the arms prop for a while.
+  effort.share *= pose_ == EndPose::prone ? 1.0 - 0.75 * min_jerk(since_s / 0.25)
+                                          : 1.0 - 0.5 * min_jerk((since_s - 0.2) / 0.6);
   return effort;
 }
 
@@ -330,7 +342,7 @@ double Falling::lying_share(Joint joint) const {
     case Part::trunk:
       return (joint == Joint::neck ? 0.5 : seated ? 0.5 : 0.25) * settings_.propping;
     case Part::legs:
-      return (pose_ == EndPose::prone && !report_.settled_s ? 0.35 : 0.22) * settings_.propping;
+      return (pose_ == EndPose::prone && !report_.settled_s ? 0.5 : 0.22) * settings_.propping;
     default:
       return (seated ? 0.6 : landing_.chest_down_s() ? 0.25 : 0.15) * settings_.propping;
   }
@@ -343,7 +355,7 @@ Falling::Effort Falling::effort_of(Joint joint, double time_s) const {
   const double still =
       report_.settled_s ? min_jerk((time_s - *report_.settled_s) / (kStill_s * body_.tau)) : 0.0;
   return {turn.from_share + way * (lying_share(joint) - turn.from_share),
-          (0.12 + 0.3 * way) * (1.0 + (kStillDamping - 1.0) * still)};
+          (0.12 + 0.1 * way) * (1.0 + (kStillDamping - 1.0) * still)};
 }
 
 /// The chest rises and falls once the body has settled: turns a goal and gives it the speed of that turn.

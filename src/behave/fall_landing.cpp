@@ -13,12 +13,13 @@ constexpr double kForwardFall = 0.3;  // the front goes down by more than this: 
 void Landing::observe_arm(const FallBody& body, const Senses& senses, BodySide side) {
   ArmLanding& arm = arms_[index(side)];
   const Segment hand = on(side, Segment::hand_r);
+  const double sink = -senses.velocity[index(on(side, Segment::upperarm_r))].y();
   if (!arm.touched_s) {
     if (!on_floor(senses, hand) && !on_floor(senses, on(side, Segment::forearm_r))) return;
     arm.touched_s = senses.time_s;
     arm.wrist = senses.pose[index(hand)].translation;
+    arm.sink_m_s = sink;
   }
-  const double sink = -senses.velocity[index(on(side, Segment::upperarm_r))].y();
   const bool while_s = senses.time_s - *arm.touched_s >= kBrakedAfter_s * body.tau;
   if (!arm.braked_s && while_s && sink < kBrakedSink_m_s * body.tau) arm.braked_s = senses.time_s;
 }

@@ -11,6 +11,7 @@ namespace ukemi {
 struct ArmLanding {
   std::optional<double> touched_s, braked_s;
   Vec3 wrist = Vec3::Zero();  // world, where it was when the hand touched
+  double sink_m_s = 0.0;      // of the shoulder then
 };
 
 /// Advanced once per accepted step.
