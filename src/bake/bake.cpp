@@ -12,6 +12,7 @@
 #include "bake/report.h"
 #include "bake/setting_table.h"
 #include "bake/sheet.h"
+#include "base/character_path.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "behave/ground.h"
@@ -22,7 +23,6 @@
 #include "clip/root_motion.h"
 #include "clip/smooth.h"
 #include "export/additive.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -160,18 +160,40 @@ Status make_timeline(const Character& character, const BakeSettings& settings, T
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
 Result<std::vector<std::uint8_t>> bvh_bytes(const Character& character, const BakeSettings& settings,
-                                            const BakedClip& outcome, const Clip& clip) {
+                                            const BakedClip& outcome, const Clip& clip,
+                                            Diagnostics& diagnostics) {
   BvhOptions options;
   if (settings.bvh_metres_per_unit) options.metres_per_unit = *settings.bvh_metres_per_unit;
-  const auto text = write_bvh(character, outcome.prepared.humanoid, clip, options);
+  const auto text = write_bvh(character, outcome.prepared.humanoid, clip, options, diagnostics);
   if (!text) return text.error();
   return bytes_of(*text);
 }
 
-std::string extras_of(const Character& character, const BakeSettings& settings, const BakedClip& outcome) {
-  return animation_extras(character.skeleton, frames_of(outcome.prepared.actor(character)),
-                          outcome.timeline.clip.marks,
-                          {std::string(name(settings.ground.root_motion)), settings.additive});
+bool same(const JointRange& a, const JointRange& b) {
+  return a.polygon == b.polygon && a.twist_min == b.twist_min && a.twist_max == b.twist_max &&
+         a.frame.parent_from_joint.coeffs() == b.frame.parent_from_joint.coeffs() &&
+         a.frame.reference.coeffs() == b.frame.reference.coeffs();
+}
+
+/// The joints whose range in force is not the human one.
+Result<std::vector<std::pair<Joint, JointRange>>> ranges_to_tell(const RangeOfMotion& in_force) {
+  const auto human = load_range_of_motion("human");
+  if (!human) return human.error();
+  std::vector<std::pair<Joint, JointRange>> ranges;
+  for (int j = 0; j < kJointCount; ++j)
+    if (!same(in_force.joints[j], human->joints[j])) ranges.emplace_back(joint_at(j), in_force.joints[j]);
+  return ranges;
+}
+
+Result<std::string> extras_of(const Character& character, const BakeSettings& settings,
+                              const BakedClip& outcome, const ExportedClip& exported) {
+  auto ranges = ranges_to_tell(outcome.prepared.range);
+  if (!ranges) return ranges.error();
+  ClipFacts facts{std::string(name(settings.ground.root_motion)), std::nullopt, std::move(*ranges)};
+  if (settings.additive) facts.additive_from = exported.clip.frames.front();
+  const Skeleton& skeleton = exported.with_root ? exported.with_root->skeleton : character.skeleton;
+  return animation_extras(skeleton, frames_of(outcome.prepared.actor(character)), outcome.timeline.clip.marks,
+                          facts);
 }
 
 Result<std::vector<std::uint8_t>> gltf_bytes(const fs::path& path, const Character& character,
@@ -185,12 +207,14 @@ Result<std::vector<std::uint8_t>> gltf_bytes(const fs::path& path, const Charact
 
 Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Character& character,
                                                const BakeSettings& settings, const BakedFile& baked,
-                                               const ExportedClip& exported) {
+                                               const ExportedClip& exported, Diagnostics& diagnostics) {
   if (output_format(path) == OutputFormat::bvh)
     return bvh_bytes(character, settings, baked.outcome,
-                     exported.root_joint < 0 ? exported.clip : exported.on_hips);
+                     exported.root_joint < 0 ? exported.clip : exported.on_hips, diagnostics);
   const Character& shown = exported.with_root ? *exported.with_root : character;
-  GltfOptions options{settings.clip_only, extras_of(character, settings, baked.outcome),
+  auto extras = extras_of(character, settings, baked.outcome, exported);
+  if (!extras) return extras.error();
+  GltfOptions options{settings.clip_only, std::move(*extras),
                       path.has_parent_path() ? path.parent_path() : fs::path(".")};
   if (!settings.append || !fs::exists(path))
     return gltf_bytes(path, shown, baked, exported.humanoid, options);
@@ -200,18 +224,35 @@ Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Chara
   return gltf_bytes(path, *earlier, baked, exported.humanoid, options);
 }
 
+/// The clip's keys, which keep its joints inside their ranges, and how far they do.
+void make_keys(const Skeleton& skeleton, const SegmentFrames& frames, const ExportedClip& exported,
+               const BakeSettings& settings, BakedFile& baked) {
+  const RangeOfMotion& range = baked.outcome.prepared.range;
+  const RangeKeeper keeper(skeleton, frames, range, exported.clip.frames);
+  baked.reduced =
+      reduce_keys(skeleton, exported.clip, exported.humanoid.world_from_file, settings.keys,
+                  [&](std::size_t frame, const Pose& reduced) { return keeper.too_far(frame, reduced); });
+  const Animation animation{baked.reduced.name, 0.0, exported.clip.duration_s(), exported.clip.fps,
+                            baked.reduced.tracks};
+  std::vector<Pose> poses;
+  for (std::size_t f = 0; f < exported.clip.frames.size(); ++f)
+    poses.push_back(sample(skeleton, animation, static_cast<double>(f) / exported.clip.fps));
+  baked.written = clip_limits(skeleton, frames, range, poses);
+}
+
 /// Fills `baked.files`.
-Status prepare_files(const Character& character, const BakeSettings& settings, BakedFile& baked) {
+Status prepare_files(const Character& character, const BakeSettings& settings, BakedFile& baked,
+                     Diagnostics& diagnostics) {
   Stopwatch watch;
   auto exported = exported_clip(character, baked.outcome.prepared.humanoid,
                                 baked.outcome.prepared.start.segments[index(Segment::pelvis)],
                                 baked.outcome.timeline.clip, settings.ground);
   if (!exported) return exported.error();
   const Skeleton& skeleton = exported->with_root ? exported->with_root->skeleton : character.skeleton;
-  baked.reduced = reduce_keys(skeleton, exported->clip, exported->humanoid.world_from_file, settings.keys);
+  make_keys(skeleton, frames_of(baked.outcome.prepared.actor(character)), *exported, settings, baked);
   if (settings.additive) baked.reduced = additive(baked.reduced, exported->clip.frames.front());
   for (const fs::path& path : settings.outputs) {
-    auto bytes = output_bytes(path, character, settings, baked, *exported);
+    auto bytes = output_bytes(path, character, settings, baked, *exported, diagnostics);
     if (!bytes) return bytes.error();
     baked.files.push_back({path, std::move(*bytes)});
   }
@@ -285,6 +326,9 @@ Result<BakedClip> bake(const Character& character, const BakeSettings& settings,
   if (const Status status = check_clip_size(character, settings, trajectory); !status) return status.error();
   if (const Status status = make_timeline(character, settings, std::move(trajectory), outcome); !status)
     return status.error();
+  const auto human = load_range_of_motion("human");
+  if (!human) return human.error();
+  outcome.human = clip_limits(outcome.prepared.humanoid, *human, outcome.timeline.trajectory.frames);
   outcome.timings_s.resample = watch.lap();
   outcome.timings_s.total = watch.total();
   return outcome;
@@ -294,8 +338,9 @@ Result<BakedFile> bake_loaded(const Character& character, const BakeSettings& se
                               Diagnostics& diagnostics) {
   auto outcome = bake(character, settings, diagnostics);
   if (!outcome) return outcome.error();
-  BakedFile baked{std::move(*outcome), {}, {}, {}, {}};
-  if (const Status status = prepare_files(character, settings, baked); !status) return status.error();
+  BakedFile baked{std::move(*outcome), {}, {}, {}, {}, {}};
+  if (const Status status = prepare_files(character, settings, baked, diagnostics); !status)
+    return status.error();
   baked.outcome.timings_s.total += baked.outcome.timings_s.export_ + baked.outcome.timings_s.render;
   return baked;
 }
@@ -331,8 +376,7 @@ Result<BakedFile> bake_file(const std::string& character, const BakeSettings& se
   if (const Status status = add_files(*baked, files); !status) return status.error();
   baked->outcome.timings_s.load += load_s;
   baked->outcome.timings_s.total = watch.total();
-  baked->report = report_json(character, *loaded, settings, baked->outcome, baked->reduced, diagnostics,
-                              baked->root_curve);
+  baked->report = report_json(character, *loaded, settings, *baked, diagnostics);
   if (!settings.report.empty())
     if (const Status status = files.add(settings.report, baked->report); !status) return status.error();
   if (const Status status = files.commit(); !status) return status.error();

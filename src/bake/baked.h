@@ -10,6 +10,7 @@
 #include "bake/prepared.h"
 #include "clip/timeline.h"
 #include "export/export.h"
+#include "judge/clip_limits.h"
 #include "rise/getting_up.h"
 #include "simulate/simulate.h"
 
@@ -28,6 +29,7 @@ struct BakedClip {
   ControllerReport behaviour;
   std::optional<GetUpTimes> get_up;
   Timeline timeline;               // its still tail trimmed, lead and recovery added
+  ClipLimits human;                // of the whole timeline, against the human range
   double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
   ResampleError resample_error;
   BakeTimings timings_s;
@@ -42,6 +44,7 @@ struct OutputFile {
 struct BakedFile {
   BakedClip outcome;
   ReducedClip reduced;
+  ClipLimits written;             // its frames, against the range in force
   std::vector<Vec3> root_curve;   // see ExportedClip
   std::vector<OutputFile> files;  // clips and pictures
   std::string report;             // JSON, format 1

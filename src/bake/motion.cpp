@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -62,12 +63,45 @@ Result<std::size_t> clip_in(const Character& character, const std::string& name)
   return !named && digits ? find_clip(character, "#" + name) : named;
 }
 
-Result<Source> open(const std::string& text, Diagnostics& diagnostics) {
+/// The character's bones by name, where the other file has them all: then they are the same in it, whatever
+/// their shape says. Empty where it has not.
+std::map<std::string, std::string> bones_by_name(const Character& character, const Humanoid& humanoid,
+                                                 const Character& other) {
+  std::map<std::string, std::string> map;
+  const std::map<std::string, int> theirs = nodes_by_plain_name(other.skeleton);
+  for (int s = 0; s < kSegmentCount; ++s) {
+    if (humanoid.segments[s].fused()) continue;
+    const std::string& bone = character.skeleton.nodes[humanoid.segments[s].node()].name;
+    const auto found = theirs.find(plain_name(bone));
+    if (bone.empty() || found == theirs.end() || found->second < 0) return {};
+    map[std::string(name(segment_at(s)))] = other.skeleton.label(found->second);
+  }
+  return map;
+}
+
+/// By the character's own bones where the names are equal, else by what the file says.
+Result<Humanoid> humanoid_of(const Character& character, const Humanoid& humanoid, const Character& other,
+                             Diagnostics& diagnostics) {
+  HumanoidOptions options;
+  options.map = bones_by_name(character, humanoid, other);
+  if (!options.map.empty()) {
+    Diagnostics said;
+    auto found = map_humanoid(other, options, said);
+    if (found) {
+      for (const Warning& warning : said.warnings()) diagnostics.warn(warning.subject, warning.what);
+      return found;
+    }
+  }
+  return map_humanoid(other, HumanoidOptions{}, diagnostics);
+}
+
+Result<Source> open(const Character& mine, const Humanoid& my_humanoid, const std::string& text,
+                    Diagnostics& diagnostics) {
   const auto wanted = split(text);
   const FileAndClip what = wanted.value_or(FileAndClip{text, std::nullopt});
   auto character = load_character(what.file, LoadOptions{}, diagnostics);
   if (!character) return character.error();
-  auto humanoid = map_humanoid(*character, HumanoidOptions{}, diagnostics);
+  auto humanoid = humanoid_of(mine, my_humanoid, *character, diagnostics);
   if (!humanoid) return humanoid.error();
   Source source{std::move(*character), std::move(*humanoid), std::nullopt};
   if (what.clip) {
@@ -125,7 +159,7 @@ bool names_motion_file(std::string_view text) { return split(text).has_value(); 
 
 Result<Animation> motion_of_file(const Character& character, const Humanoid& humanoid,
                                  const std::string& text, Diagnostics& diagnostics) {
-  const auto source = open(text, diagnostics);
+  const auto source = open(character, humanoid, text, diagnostics);
   if (!source) return source.error();
   if (!source->clip)
     return input_error(source->character.path, "holds no clip",
@@ -149,7 +183,7 @@ Result<Animation> motion_of_file(const Character& character, const Humanoid& hum
 
 Result<Pose> pose_of_file(const Character& character, const Humanoid& humanoid, const std::string& text,
                           Diagnostics& diagnostics) {
-  const auto source = open(text, diagnostics);
+  const auto source = open(character, humanoid, text, diagnostics);
   if (!source) return source.error();
   const Transfer transfer(character, humanoid, source->character, source->humanoid);
   Pose pose = rest_pose(source->character.skeleton);

@@ -22,12 +22,12 @@ void widen_for_start(Prepared& prepared, Diagnostics& diagnostics) {
     const double widened = widen_to_hold(prepared.range.joints[i], charts[i], kStartMargin);
     if (widened <= 0.0) continue;
     prepared.widened.emplace_back(joint_at(i), widened);
-    if (outside > radians(1.0))
-      diagnostics.warn(
-          std::string(name(joint_at(i))),
-          fmt::format("starts {:.1f} degrees outside its range of motion; the range is widened by {:.1f} "
-                      "degrees for this bake",
-                      degrees(outside), degrees(widened)));
+    const std::string start =
+        outside > 0.0 ? fmt::format("{:.1f} degrees outside its range of motion", degrees(outside))
+                      : std::string("near the edge of its range of motion");
+    diagnostics.warn(std::string(name(joint_at(i))),
+                     fmt::format("starts {}; the range is widened by {:.1f} degrees for this bake", start,
+                                 degrees(widened)));
   }
 }
 

@@ -180,7 +180,7 @@ Json response_json(const BakedClip& outcome) {
   return json;
 }
 
-Json limits_json(const BakedClip& outcome) {
+Json limits_json(const BakedClip& outcome, const ClipLimits& written) {
   const LimitFigures& figures = outcome.limits;
   Json json;
   json["samples"] = figures.samples;
@@ -194,6 +194,11 @@ Json limits_json(const BakedClip& outcome) {
   json["widened_deg"] = Json::object();
   for (const auto& [joint, angle] : outcome.prepared.widened)
     json["widened_deg"][std::string(name(joint))] = degrees(angle);
+  json["human_over_1deg"] = outcome.human.over_1deg;
+  json["human_excess_max_deg"] = outcome.human.excess_max_deg;
+  json["clip_samples"] = written.samples;
+  json["clip_over_1deg"] = written.over_1deg;
+  json["clip_excess_max_deg"] = written.excess_max_deg;
   return json;
 }
 
@@ -277,8 +282,9 @@ Json timings_json(const BakeTimings& timings, double clip_duration_s) {
 }  // namespace
 
 std::string report_json(const std::string& character, const Character& loaded, const BakeSettings& settings,
-                        const BakedClip& outcome, const ReducedClip& reduced, const Diagnostics& diagnostics,
-                        const std::vector<Vec3>& root_curve) {
+                        const BakedFile& baked, const Diagnostics& diagnostics) {
+  const BakedClip& outcome = baked.outcome;
+  const std::vector<Vec3>& root_curve = baked.root_curve;
   Json json;
   json["format"] = 1;
   json["generator"] = generator();
@@ -288,9 +294,9 @@ std::string report_json(const std::string& character, const Character& loaded, c
   json["humanoid"] = humanoid_json(loaded, outcome);
   json["impact"] = impact_json(loaded, settings, outcome);
   json["response"] = response_json(outcome);
-  json["limits"] = limits_json(outcome);
+  json["limits"] = limits_json(outcome, baked.written);
   json["simulation"] = simulation_json(outcome.figures);
-  json["clip"] = clip_json(loaded.skeleton, settings, outcome, reduced);
+  json["clip"] = clip_json(loaded.skeleton, settings, outcome, baked.reduced);
   if (!root_curve.empty()) json["clip"]["root_curve_m"] = root_curve_json(root_curve);
   json["timings_s"] = timings_json(outcome.timings_s, outcome.timeline.clip.duration_s());
   json["warnings"] = Json::array();

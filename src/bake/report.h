@@ -26,8 +26,7 @@ namespace ukemi {
 /// the motion on the hips.
 /// 6. timings_s.realtime_factor is the clip's length over the total.
 std::string report_json(const std::string& character, const Character& loaded, const BakeSettings& settings,
-                        const BakedClip& outcome, const ReducedClip& reduced, const Diagnostics& diagnostics,
-                        const std::vector<Vec3>& root_curve = {});
+                        const BakedFile& baked, const Diagnostics& diagnostics);
 
 std::string_view name(Limits limits);
 std::string_view name(Active active);

@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "bake/impact.h"
-#include "bake/map_file.h"
 #include "bake/settings.h"
 #include "base/errors.h"
 #include "base/nearest.h"
 #include "base/parse_segment.h"
 #include "base/segments.h"
+#include "bones/map_file.h"
 
 namespace ukemi {
 namespace {
@@ -175,6 +175,23 @@ HumanoidSetting map_setting() {
     std::vector<std::string> entries;
     for (const auto& [segment, node] : target.map) entries.push_back(segment + "=" + node);
     return entries;
+  };
+  return setting;
+}
+
+HumanoidSetting root_setting() {
+  HumanoidSetting setting;
+  setting.name = "root";
+  setting.value = "NODE";
+  setting.help = "of several figures in a file the one at or below this node, by its name or #INDEX";
+  setting.unset = "the first";
+  setting.set = [](HumanoidOptions& target, const std::string& text) -> Status {
+    if (text.empty()) return usage_error("no node is named", "give a node's name, or its #INDEX in the file");
+    target.root = text;
+    return Done{};
+  };
+  setting.get = [](const HumanoidOptions& target) {
+    return target.root.empty() ? std::vector<std::string>() : std::vector<std::string>{target.root};
   };
   return setting;
 }
@@ -541,8 +558,8 @@ Settings all_settings() {
 }  // namespace
 
 const std::vector<HumanoidSetting>& humanoid_settings() {
-  static const std::vector<HumanoidSetting> settings = {map_setting(), unit_setting(), up_setting(),
-                                                        height_setting()};
+  static const std::vector<HumanoidSetting> settings = {map_setting(), root_setting(), unit_setting(),
+                                                        up_setting(), height_setting()};
   return settings;
 }
 

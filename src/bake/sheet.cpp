@@ -8,13 +8,13 @@
 #include <memory>
 
 #include "bake/impact.h"
+#include "base/character_path.h"
 #include "base/errors.h"
 #include "base/numbers.h"
 #include "clip/frames.h"
 #include "clip/names.h"
 #include "clip/start.h"
 #include "humanoid/rotations.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -65,8 +65,11 @@ std::vector<Fact> facts_of(const BakeSettings& settings, const BakedClip& outcom
       {"blow", blow_text(settings, outcome.prepared.scene)},
       {"figure",
        fmt::format("{:.2f} m, {:.1f} kg", outcome.prepared.humanoid.height_m, outcome.prepared.body.mass_kg)},
-      {"over 1° outside the range", fmt::format("{} of {} samples", limits.over_1deg, limits.samples)},
+      {outcome.prepared.widened.empty() ? "over 1° outside the range" : "over 1° outside the widened range",
+       fmt::format("{} of {} samples", limits.over_1deg, limits.samples)},
       {"largest excess", fmt::format("{:.2f}°", limits.excess_max_deg)}};
+  if (!outcome.prepared.widened.empty())
+    facts.push_back({"outside the human range", fmt::format("up to {:.1f}°", outcome.human.excess_max_deg)});
   if (figures.first_ground_contact_s)
     facts.push_back({"first ground contact", fmt::format("{:.2f} s", *figures.first_ground_contact_s)});
   facts.push_back(

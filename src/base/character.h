@@ -66,6 +66,8 @@ struct BvhSource {
   std::vector<std::vector<BvhChannel>> channels;  // per joint
   std::vector<std::optional<Vec3>> end_site;      // per joint: offset of its End Site
   double frame_time_s = 0.0;
+  /// Positions below the root are added to the offsets, not put in their place.
+  bool positions_add = false;
   std::vector<std::vector<double>> frames;  // raw rows, file units and degrees
 };
 
@@ -85,8 +87,8 @@ struct Character {
   GltfDocument document;                               // gltf: the file's; bvh, assimp: written by the loader
   std::optional<BvhSource> bvh;                        // where the file is a BVH
   std::vector<std::pair<std::string, int>> vrm_bones;  // VRM human bone name, node
-  std::optional<double> metres_per_unit;               // where the file states its unit (FBX, DAE)
-  std::optional<Quat> yup_from_file;                   // where the file states its up axis (FBX, DAE)
+  std::optional<double> metres_per_unit;               // where the file states its unit (FBX, DAE, our BVH)
+  std::optional<Quat> yup_from_file;  // where the file states its up axis (FBX, DAE, our BVH)
 };
 
 }  // namespace ukemi

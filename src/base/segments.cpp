@@ -1,5 +1,8 @@
 #include "base/segments.h"
 
+#include <string>
+#include <utility>
+
 namespace ukemi {
 namespace {
 
@@ -21,6 +24,55 @@ int mirrored_segment(int s) {
   return s;
 }
 
+/// What artists and engines call the segments; of limbs the left one.
+constexpr std::pair<std::string_view, Segment> kAliases[] = {
+    {"hips", Segment::pelvis},       {"hip", Segment::pelvis},          {"spine", Segment::abdomen},
+    {"belly", Segment::abdomen},     {"waist", Segment::abdomen},       {"stomach", Segment::abdomen},
+    {"torso", Segment::chest},       {"upperchest", Segment::chest},    {"ribs", Segment::chest},
+    {"skull", Segment::head},        {"clavicle", Segment::clavicle_l}, {"shoulder", Segment::clavicle_l},
+    {"collar", Segment::clavicle_l}, {"upperarm", Segment::upperarm_l}, {"lowerarm", Segment::forearm_l},
+    {"forearm", Segment::forearm_l}, {"hand", Segment::hand_l},         {"upperleg", Segment::thigh_l},
+    {"upleg", Segment::thigh_l},     {"thigh", Segment::thigh_l},       {"lowerleg", Segment::shank_l},
+    {"calf", Segment::shank_l},      {"shin", Segment::shank_l},        {"shank", Segment::shank_l},
+    {"foot", Segment::foot_l}};
+
+/// Lower case letters alone: "Left Upper-Leg" -> "leftupperleg".
+std::string letters_of(std::string_view text) {
+  std::string letters;
+  for (const char c : text) {
+    if (c >= 'A' && c <= 'Z') letters += static_cast<char>(c - 'A' + 'a');
+    if (c >= 'a' && c <= 'z') letters += c;
+  }
+  return letters;
+}
+
+/// Takes the side off: "leftfoot" or "foot_l" (text: as it was written). Nothing where there is none.
+std::optional<bool> take_side_is_left(std::string_view text, std::string& letters) {
+  for (const auto& [word, left] : {std::pair(std::string_view("left"), true), {"right", false}}) {
+    if (letters.starts_with(word)) return letters.erase(0, word.size()), left;
+    if (letters.ends_with(word)) return letters.resize(letters.size() - word.size()), left;
+  }
+  if (text.size() < 3) return std::nullopt;
+  const char first = text[0], last = text.back();
+  const auto separates = [](char c) { return c == '_' || c == '.' || c == ' ' || c == '-'; };
+  const auto is_side = [](char c) { return c == 'l' || c == 'L' || c == 'r' || c == 'R'; };
+  if (is_side(last) && separates(text[text.size() - 2]))
+    return letters.pop_back(), last == 'l' || last == 'L';
+  if (is_side(first) && separates(text[1])) return letters.erase(0, 1), first == 'l' || first == 'L';
+  return std::nullopt;
+}
+
+std::optional<Segment> segment_of_alias(std::string_view text) {
+  std::string letters = letters_of(text);
+  const auto left = take_side_is_left(text, letters);
+  for (const auto& [alias, segment] : kAliases) {
+    const bool has_sides = mirrored_segment(index(segment)) != index(segment);
+    if (alias != letters || has_sides != left.has_value()) continue;
+    return !left || *left ? segment : segment_at(mirrored_segment(index(segment)));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Segment parent_of(Segment s) { return segment_at(kParents[index(s)]); }
@@ -33,7 +85,7 @@ std::string_view name(Joint j) { return kJointNames[index(j)]; }
 std::optional<Segment> segment_named(std::string_view text) {
   for (int i = 0; i < kSegmentCount; ++i)
     if (name(segment_at(i)) == text) return segment_at(i);
-  return std::nullopt;
+  return segment_of_alias(text);
 }
 
 std::optional<Joint> joint_named(std::string_view text) {

@@ -75,6 +75,7 @@ constexpr bool is_right(Joint j) {
 
 std::string_view name(Segment s);
 std::string_view name(Joint j);
+/// By its name, or as artists, Unity, Unreal and VRM say: hips, torso, "left upper leg", calf_l, LowerArm.R.
 std::optional<Segment> segment_named(std::string_view text);
 std::optional<Joint> joint_named(std::string_view text);
 

@@ -58,6 +58,22 @@ bool Skeleton::is_ancestor(int ancestor, int node) const {
   return false;
 }
 
+std::string plain_name(std::string name) {
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) <= ' ' || c == '{' || c == '}') c = '_';
+  return name;
+}
+
+std::map<std::string, int> nodes_by_plain_name(const Skeleton& skeleton, const std::vector<char>& counts) {
+  std::map<std::string, int> nodes;
+  for (int i = 0; i < skeleton.size(); ++i) {
+    if (skeleton.nodes[i].name.empty() || (!counts.empty() && !counts[static_cast<std::size_t>(i)])) continue;
+    const auto [at, is_new] = nodes.emplace(plain_name(skeleton.nodes[i].name), i);
+    if (!is_new) at->second = -1;
+  }
+  return nodes;
+}
+
 Pose rest_pose(const Skeleton& skeleton) {
   Pose pose;
   pose.reserve(skeleton.nodes.size());

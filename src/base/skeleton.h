@@ -1,6 +1,7 @@
 // The character's own hierarchy of nodes and poses of it, in the file's units and axes.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,12 @@ struct Skeleton {
   std::vector<std::vector<int>> children() const;
   bool is_ancestor(int ancestor, int node) const;
 };
+
+/// A name as a BVH can hold it: blanks, braces and control characters are '_' (as three.js reads glTF names).
+std::string plain_name(std::string name);
+/// Nodes by plain name, of those that `counts` (all where it is empty); -1 for a name that several have.
+std::map<std::string, int> nodes_by_plain_name(const Skeleton& skeleton,
+                                               const std::vector<char>& counts = {});
 
 /// One local transform per node.
 using Pose = std::vector<LocalTransform>;

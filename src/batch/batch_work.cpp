@@ -7,9 +7,9 @@
 
 #include "bake/bake.h"
 #include "bake/report.h"
+#include "base/character_path.h"
 #include "base/digest.h"
 #include "base/files.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -90,8 +90,8 @@ class BatchWorker {
       if (const Status status = write_files(*baked); !status) return status;
     for (const OutputFile& file : baked->files) note(record, file.path, file.bytes);
     if (!settings.report.empty()) {
-      const std::string report = report_json(named.written, (*loaded)->character, reaction.settings,
-                                             baked->outcome, baked->reduced, diagnostics, baked->root_curve);
+      const std::string report =
+          report_json(named.written, (*loaded)->character, reaction.settings, *baked, diagnostics);
       if (write)
         if (const Status status = write_file(settings.report, report); !status) return status;
       note(record, settings.report, {reinterpret_cast<const std::uint8_t*>(report.data()), report.size()});

@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/setting_table.h"
+#include "base/character_path.h"
 #include "base/digest.h"
 #include "base/files.h"
 #include "base/uri.h"
 #include "base/version.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

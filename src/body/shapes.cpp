@@ -206,14 +206,16 @@ Shape foot(const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
 PerSegment<std::vector<Vec3>> skin_of_segments(const Character& character, const Humanoid& humanoid,
                                                const Pose& pose, const BodyPose& segments) {
   PerSegment<std::vector<Vec3>> result;
-  const std::vector<Segment> owner = segments_of_nodes(character.skeleton, humanoid);
+  const auto owner = segments_of_nodes(character.skeleton, humanoid);
   const std::vector<Affine> world = world_transforms(character.skeleton, pose);
   PerSegment<Rigid> segment_from_world;
   for (int s = 0; s < kSegmentCount; ++s) segment_from_world[s] = segments[s].inverse();
-  const auto add = [&](Segment s, const Vec3& file_position) {
-    result[index(s)].push_back(segment_from_world[index(s)] * (humanoid.world_from_file * file_position));
+  const auto add = [&](const std::optional<Segment>& s, const Vec3& file_position) {
+    if (!s) return;
+    result[index(*s)].push_back(segment_from_world[index(*s)] * (humanoid.world_from_file * file_position));
   };
   for (const MeshPart& part : character.parts) {
+    if (is_scenery(character.skeleton, humanoid, part)) continue;
     if (part.skin < 0) {
       for (const auto& p : part.positions) add(owner[part.node], world[part.node] * p.cast<double>());
       continue;

@@ -9,9 +9,9 @@
 
 #include "bake/bake.h"
 #include "base/animation.h"
+#include "base/character_path.h"
 #include "base/native_rate.h"
 #include "check/inspect.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "base/animation.h"
+#include "base/character_path.h"
 #include "base/errors.h"
 #include "base/native_rate.h"
 #include "check/inspect.h"
 #include "clip/names.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -40,28 +40,44 @@ int nearest_matched_ancestor(const Skeleton& skeleton, int node, const std::map<
   return -1;
 }
 
-std::vector<Match> match_joints(const Skeleton& a, const Skeleton& b, Difference& difference) {
-  std::map<std::string, int> b_by_label;
-  for (int i = 0; i < b.size(); ++i) b_by_label[b.label(i)] = i;
+/// Nodes by name, meshes apart: bones may share their names. What has no name of its own goes by its number.
+std::map<std::string, int> joints_by_name(const Character& character) {
+  const Skeleton& skeleton = character.skeleton;
+  std::vector<char> is_bone(skeleton.nodes.size(), 1);
+  for (const MeshPart& part : character.parts)
+    if (part.skin >= 0 && part.node >= 0) is_bone[static_cast<std::size_t>(part.node)] = 0;
+  std::map<std::string, int> nodes = nodes_by_plain_name(skeleton, is_bone);
+  std::erase_if(nodes, [](const auto& named) { return named.second < 0; });
+  std::vector<char> has_name(skeleton.nodes.size(), 0);
+  for (const auto& [name, node] : nodes) has_name[static_cast<std::size_t>(node)] = 1;
+  for (int i = 0; i < skeleton.size(); ++i)
+    if (!has_name[static_cast<std::size_t>(i)]) nodes[fmt::format("#{}", i)] = i;
+  return nodes;
+}
+
+std::vector<Match> match_joints(const Character& a, const Character& b, Difference& difference) {
+  std::map<std::string, int> in_b = joints_by_name(b);
+  std::vector<std::string> name_in_a(a.skeleton.nodes.size());
+  for (const auto& [name, node] : joints_by_name(a)) name_in_a[static_cast<std::size_t>(node)] = name;
   std::vector<Match> matches;
   std::map<int, int> match_of_a;
-  for (const int i : a.order) {
-    const auto found = b_by_label.find(a.label(i));
-    if (found == b_by_label.end()) {
-      difference.only_in_a.push_back(a.label(i));
+  for (const int i : a.skeleton.order) {
+    const auto found = in_b.find(name_in_a[static_cast<std::size_t>(i)]);
+    if (found == in_b.end()) {
+      difference.only_in_a.push_back(a.skeleton.label(i));
       continue;
     }
     match_of_a[i] = static_cast<int>(matches.size());
     matches.push_back({i, found->second, -1});
-    b_by_label.erase(found);
+    in_b.erase(found);
   }
-  for (const auto& [label, node] : b_by_label) difference.only_in_b.push_back(label);
+  for (const auto& [name, node] : in_b) difference.only_in_b.push_back(b.skeleton.label(node));
   std::map<int, int> match_of_b;
   for (std::size_t m = 0; m < matches.size(); ++m) match_of_b[matches[m].node_b] = static_cast<int>(m);
   for (Match& match : matches) {
-    const int in_a = nearest_matched_ancestor(a, match.node_a, match_of_a);
-    const int in_b = nearest_matched_ancestor(b, match.node_b, match_of_b);
-    match.parent = in_a == in_b ? in_a : -1;
+    const int above_a = nearest_matched_ancestor(a.skeleton, match.node_a, match_of_a);
+    const int above_b = nearest_matched_ancestor(b.skeleton, match.node_b, match_of_b);
+    match.parent = above_a == above_b ? above_a : -1;
   }
   return matches;
 }
@@ -194,6 +210,14 @@ double largest(const Difference& difference, Member member) {
   return value;
 }
 
+/// The first word of the answer: what does not agree.
+std::string_view verdict_of(const Difference& difference, const DifferenceSettings& settings) {
+  if (difference.within_tolerance) return "same";
+  const bool moves_alike = largest(difference, &JointDifference::position_mm) <= settings.tolerance_mm &&
+                           largest(difference, &JointDifference::rotation_deg) <= settings.tolerance_deg;
+  return moves_alike ? "different lengths, the same as far as the shorter goes" : "different";
+}
+
 }  // namespace
 
 Result<Difference> difference_of(const PlacedClip& a, const PlacedClip& b,
@@ -203,7 +227,7 @@ Result<Difference> difference_of(const PlacedClip& a, const PlacedClip& b,
   difference.clip_b = b.animation->name;
   difference.duration_a_s = a.animation->duration_s();
   difference.duration_b_s = b.animation->duration_s();
-  std::vector<Match> matches = match_joints(a.character->skeleton, b.character->skeleton, difference);
+  std::vector<Match> matches = match_joints(*a.character, *b.character, difference);
   if (matches.empty())
     return input_error(b.character->path,
                        "no joint has the same name as one of " + a.character->path.string(),
@@ -278,7 +302,7 @@ std::string difference_text(const std::string& a, const std::string& b, const Di
   std::string text = fmt::format(
       "{}: {} joints at {} times; at most {:.4g} mm and {:.4g} degrees (tolerance {:.4g} mm, {:.4g} "
       "degrees)\n",
-      difference.within_tolerance ? "same" : "different", difference.joints.size(), difference.samples,
+      verdict_of(difference, settings), difference.joints.size(), difference.samples,
       largest(difference, &JointDifference::position_mm), largest(difference, &JointDifference::rotation_deg),
       settings.tolerance_mm, settings.tolerance_deg);
   if (!difference.same_duration)

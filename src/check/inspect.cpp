@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/animation.h"
+#include "base/character_path.h"
 #include "base/native_rate.h"
 #include "clip/names.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "base/animation.h"
+#include "base/character_path.h"
 #include "base/errors.h"
 #include "base/native_rate.h"
 #include "clip/frames.h"
 #include "clip/names.h"
 #include "judge/judge.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

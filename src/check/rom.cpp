@@ -8,14 +8,14 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/report.h"
+#include "base/character_path.h"
 #include "base/errors.h"
 #include "base/nearest.h"
 #include "clip/names.h"
-#include "load/character_path.h"
 #include "load/load.h"
+#include "physics/swing.h"
 #include "render/rom_plot.h"
 #include "restrict/limit_rows.h"
-#include "physics/swing.h"
 
 namespace ukemi {
 namespace {
@@ -73,8 +73,8 @@ Result<Character> load_to_check(const RomSettings& settings, std::optional<std::
   return load_character(*path, LoadOptions{}, diagnostics);
 }
 
-Result<RomCheck> check_clip(const RomSettings& settings, const RangeOfMotion& range,
-                            Diagnostics& diagnostics) {
+/// Leaves the range that the clip was judged by.
+Result<RomCheck> check_clip(const RomSettings& settings, RangeOfMotion& range, Diagnostics& diagnostics) {
   std::optional<std::string> wanted = settings.clip;
   const auto character = load_to_check(settings, wanted, diagnostics);
   if (!character) return character.error();
@@ -88,6 +88,7 @@ Result<RomCheck> check_clip(const RomSettings& settings, const RangeOfMotion& ra
   }
   const auto humanoid = map_humanoid(*character, settings.humanoid, diagnostics);
   if (!humanoid) return humanoid.error();
+  range = range_of_clip(range, *character, clip);
   const Clip sampled = clip_to_check(*character, clip);
   RomCheck check{*settings.check, sampled.name, sampled.fps, sampled.duration_s(), 0, {}, {}};
   check.frames = static_cast<long>(sampled.frames.size());

@@ -58,9 +58,16 @@ std::string summary(const BakeRequest& request, const BakedFile& baked) {
                       outcome.timeline.clip.frames.size(), outcome.timeline.clip.fps,
                       figures.rest_time_s ? fmt::format("at rest after {:.2f} s", *figures.rest_time_s)
                                           : std::string("not at rest"));
-  text += fmt::format("range of motion: {} of {} samples over 1 degree outside, at most {:.2f} degrees{}\n",
+  text += fmt::format("range of motion{}: {} of {} samples over 1 degree outside, at most {:.2f} degrees{}\n",
+                      outcome.prepared.widened.empty() ? "" : ", widened for the start pose",
                       limits.over_1deg, limits.samples, limits.excess_max_deg,
                       limits.worst_joint ? fmt::format(" ({})", name(*limits.worst_joint)) : std::string());
+  if (outcome.human.excess_max_deg > 1.0)
+    text += fmt::format(
+        "human range of motion: {} of {} joint samples over 1 degree outside, at most {:.2f} "
+        "degrees{}\n",
+        outcome.human.over_1deg, outcome.human.samples, outcome.human.excess_max_deg,
+        outcome.human.worst_joint ? fmt::format(" ({})", name(*outcome.human.worst_joint)) : "");
   for (const auto& output : request.settings.outputs) text += "wrote " + output.string() + "\n";
   if (!request.settings.sheet.empty()) text += "wrote " + request.settings.sheet.string() + "\n";
   if (!request.settings.preview.empty()) text += "wrote " + request.settings.preview.string() + "\n";

@@ -8,13 +8,13 @@
 #include <string>
 #include <thread>
 
+#include "base/character_path.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
 #include "cli/settings_options.h"
-#include "load/character_path.h"
 #include "load/load.h"
 #include "study/compare.h"
 #include "study/compare_pictures.h"

@@ -32,6 +32,7 @@ Status take_state(RomSettings& settings, const std::string& text) {
 }
 
 constexpr Range kExcessRange{0.0, 180.0};
+constexpr double kMostExcess_deg = 1.0;  // unless --max-excess says otherwise
 
 /// The command line of `ukemi rom`.
 struct RomRequest {
@@ -57,7 +58,7 @@ void declare(Options& options, RomRequest& request) {
   options.flag("--swing", settings.swing,
                "pulls a single link on the joint into its boundary, under axis, segments and edges");
   options.number("--max-excess", "DEG", request.max_excess_deg, kExcessRange,
-                 "with --check: exit status 1 when a joint lies farther outside than this");
+                 "with --check: exit status 1 when a joint lies farther outside than this [default 1]");
   declare_humanoid_options(options, settings.humanoid);
   options.path("-o,--output", request.output, "the picture, as .png");
   options.flag("--json", request.json, "as JSON to stdout");
@@ -98,12 +99,13 @@ int rom_command(const Arguments& arguments) {
     if (!png) return print_error(png.error());
     if (const Status status = write_file(request.output, *png); !status) return print_error(status.error());
   }
-  const bool too_far = request.max_excess_deg && largest_excess_deg(*rom) > *request.max_excess_deg;
+  const double most_deg = request.max_excess_deg.value_or(kMostExcess_deg);
+  const bool too_far = rom->check && largest_excess_deg(*rom) > most_deg;
   if (request.json) return print_json(rom_json(*rom), too_far ? 1 : 0);
   std::string text = rom_text(*rom);
   if (too_far)
     text += fmt::format("{:.2f} degrees outside, more than --max-excess {:g}\n", largest_excess_deg(*rom),
-                        *request.max_excess_deg);
+                        most_deg);
   if (!request.output.empty()) text += fmt::format("wrote {}\n", request.output.string());
   return print_result(text, too_far ? 1 : 0);
 }

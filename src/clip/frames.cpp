@@ -1,5 +1,6 @@
 #include "clip/frames.h"
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -32,6 +33,53 @@ bool read_segment(const Skeleton& skeleton, const Json& segments, Segment segmen
   frames.node[index(segment)] = skeleton.find(node.get<std::string>());
   frames.segment_from_node[index(segment)] = *rotation;
   return frames.node[index(segment)] >= 0;
+}
+
+Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+Json numbers(const Quat& q) { return {q.x(), q.y(), q.z(), q.w()}; }
+
+/// The nodes that do not rest in a pose.
+Json pose_json(const Skeleton& skeleton, const Pose& pose) {
+  Json json = Json::object();
+  for (int i = 0; i < skeleton.size(); ++i) {
+    const LocalTransform &rest = skeleton.nodes[i].rest, &now = pose[static_cast<std::size_t>(i)];
+    if (rest.translation == now.translation && rest.scale == now.scale &&
+        rest.rotation.coeffs() == now.rotation.coeffs())
+      continue;
+    json[skeleton.label(i)] = {{"translation", numbers(now.translation)},
+                               {"rotation", numbers(now.rotation)},
+                               {"scale", numbers(now.scale)}};
+  }
+  return json;
+}
+
+Json range_json(const JointRange& range) {
+  Json json;
+  for (const Vec2& corner : range.polygon) json["polygon"].push_back({corner.x(), corner.y()});
+  json["twist"] = {range.twist_min, range.twist_max};
+  json["parent_from_joint"] = numbers(range.frame.parent_from_joint);
+  json["reference"] = numbers(range.frame.reference);
+  return json;
+}
+
+/// Nothing where it is no range (see JointRange) as this program writes it.
+std::optional<JointRange> range_from(const Json& json, JointRange range) try {
+  constexpr std::size_t kMostCorners = 1000;
+  const auto frame = quaternion_in(json.at("parent_from_joint")),
+             reference = quaternion_in(json.at("reference"));
+  const auto corners = json.at("polygon").get<std::vector<std::array<double, 2>>>();
+  const auto twist = json.at("twist").get<std::array<double, 2>>();
+  if (!frame || !reference || corners.size() < 3 || corners.size() > kMostCorners) return std::nullopt;
+  range.polygon.clear();
+  for (const auto& [a_y, a_z] : corners) range.polygon.emplace_back(a_y, a_z);
+  range.twist_min = twist[0];
+  range.twist_max = twist[1];
+  range.frame = {*frame, *reference};
+  const bool valid = twist[0] <= 0.0 && twist[1] >= 0.0 && polygon_area(range.polygon) > 0.0 &&
+                     polygon_distance(range.polygon, Vec2::Zero()) <= 0.0;
+  return valid ? std::optional(range) : std::nullopt;
+} catch (const Json::exception&) {
+  return std::nullopt;
 }
 
 }  // namespace
@@ -75,10 +123,13 @@ std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& fram
     segment = {{"node", skeleton.label(frames.node[i])}, {"segment_from_node", {q.x(), q.y(), q.z(), q.w()}}};
   }
   Json ours = {{"format", 1}, {"generator", generator()}};
-  if (!facts.additive) ours["segments"] = std::move(segments);
+  ours["segments"] = std::move(segments);
   for (const Mark& mark : marks) ours["marks"].push_back({{"name", mark.name}, {"time_s", mark.time_s}});
   ours["root_motion"] = facts.root_motion;
-  ours["additive"] = facts.additive;
+  ours["additive"] = facts.additive_from.has_value();
+  if (facts.additive_from) ours["from"] = pose_json(skeleton, *facts.additive_from);
+  for (const auto& [joint, range] : facts.ranges)
+    ours["ranges"][std::string(name(joint))] = range_json(range);
   const Json json = {{"ukemi", std::move(ours)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -93,6 +144,19 @@ std::optional<SegmentFrames> frames_in_extras(const Skeleton& skeleton, std::str
   for (int i = 0; i < kSegmentCount; ++i)
     if (!read_segment(skeleton, ours["segments"], segment_at(i), frames)) return std::nullopt;
   return frames;
+}
+
+RangeOfMotion range_in_extras(RangeOfMotion human, std::string_view extras_json) {
+  const Json json = Json::parse(extras_json, nullptr, false);
+  const Json::json_pointer place("/ukemi/ranges");
+  if (!json.is_object() || !json.contains(place) || !json[place].is_object()) return human;
+  for (const auto& [label, range] : json[place].items()) {
+    const auto joint = joint_named(label);
+    if (!joint) continue;
+    JointRange& in_force = human.joints[index(*joint)];
+    if (const auto stored = range_from(range, in_force)) in_force = *stored;
+  }
+  return human;
 }
 
 std::vector<Mark> marks_in_extras(std::string_view extras_json) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/animation.h"
@@ -11,6 +12,7 @@
 #include "base/segments.h"
 #include "base/skeleton.h"
 #include "humanoid/humanoid.h"
+#include "restrict/range_of_motion.h"
 
 namespace ukemi {
 
@@ -31,17 +33,25 @@ PerSegment<Quat> rotations_of(const Skeleton& skeleton, const SegmentFrames& fra
 /// What is said of a baked animation beside its frames and marks.
 struct ClipFacts {
   std::string root_motion = "hips";
-  bool additive = false;
+  std::optional<Pose> additive_from;                 // an additive clip: the pose it is the difference from
+  std::vector<std::pair<Joint, JointRange>> ranges;  // in force, where they are not the human ones
 };
 
 /// The extras of a baked animation: {"ukemi": {"format": 1, "generator": ..., "segments": {SEGMENT: {"node",
-/// "segment_from_node": [x, y, z, w]}}, "marks": [{"name", "time_s"}], "root_motion", "additive"}}; null for
-/// a fused segment. An additive clip has no segments.
+/// "segment_from_node": [x, y, z, w]}}, "marks": [{"name", "time_s"}], "root_motion", "additive", "from":
+/// {NODE:
+/// {"translation", "rotation", "scale"}}, "ranges": {JOINT: {"polygon", "twist" (radians),
+/// "parent_from_joint", "reference"}}}}; null for a fused segment. "from", of an additive clip, lists the
+/// nodes that do not rest in the pose it is added to; "ranges" the joints whose range in force is not the
+/// human one.
 std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames,
                              const std::vector<Mark>& marks = {}, const ClipFacts& facts = {});
 
 /// The frames in an animation's extras; nothing where there are none or they do not fit the skeleton.
 std::optional<SegmentFrames> frames_in_extras(const Skeleton& skeleton, std::string_view extras_json);
+
+/// The range that the bake of an animation was judged by: `human` with the joints that its extras change.
+RangeOfMotion range_in_extras(RangeOfMotion human, std::string_view extras_json);
 
 /// The marks in an animation's extras; none where there are none or they are not as they are written.
 std::vector<Mark> marks_in_extras(std::string_view extras_json);

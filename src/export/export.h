@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,8 +36,11 @@ struct ReducedClip {
   std::vector<Mark> marks;
   bool short_rotations = false;
 };
+/// Nodes whose rotations must be as in the whole clip at a frame, told from the reduced pose there; asked
+/// again until there are none.
+using ExactRotations = std::function<std::vector<int>(std::size_t frame, const Pose& reduced)>;
 ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Similarity& world_from_file,
-                        const KeyReduction& settings);
+                        const KeyReduction& settings, const ExactRotations& exact = {});
 
 struct GltfOptions {
   bool clip_only = false;   // nodes, skins and animation without meshes, materials, images, extensions
@@ -63,12 +67,15 @@ struct BvhOptions {
 };
 
 /// Same hierarchy, names, offsets, channel order and unit as a BVH source (joints with fewer than three
-/// rotation channels get the nearest rotation those can make). For others the joints of the humanoid's chains
-/// and their ancestors up to the root: offsets as in the reference pose, all rotations zero there and axes
-/// along the world's, root OFFSET 0, positions on the root only, rotations Z Y X: with y in the middle a body
-/// that lies on its back, belly or side, bent hips and bent knees stay clear of the gimbal. Euler angles
-/// without jumps, full precision. Errors: input (a clip without frames or of another skeleton).
+/// rotation channels get the nearest rotation those can make; what joints without position channels would
+/// move goes onto the joint above that has them). For others the joints of the humanoid's chains and their
+/// ancestors up to the root: offsets as in the reference pose, all rotations zero there and axes along the
+/// world's, root OFFSET 0, positions on the root only, rotations Z Y X: with y in the middle a body that lies
+/// on its back, belly or side, bent hips and bent knees stay clear of the gimbal. The name of the first End
+/// Site says unit and up axis ("unit=0.01m,up=y"): the format has no word for them, and readers skip it
+/// there. Euler angles without jumps, full precision. A joint that the hierarchy holds more than 0.5 mm away
+/// from its place is a warning. Errors: input (a clip without frames or of another skeleton).
 Result<std::string> write_bvh(const Character& character, const Humanoid& humanoid, const Clip& clip,
-                              const BvhOptions& options);
+                              const BvhOptions& options, Diagnostics& diagnostics);
 
 }  // namespace ukemi

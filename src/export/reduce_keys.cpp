@@ -170,7 +170,7 @@ class Reduction {
     pinned_.erase(std::unique(pinned_.begin(), pinned_.end()), pinned_.end());
   }
 
-  void run(double bound_m) {
+  void run(double bound_m, const ExactRotations& exact) {
     bound_m_ = bound_m;
     for (KeyCurve& curve : curves_) {
       tolerance_.push_back(kShare * bound_m_ / std::max(rig_.reach_m(curve.node, curve.path), 1e-12));
@@ -183,6 +183,10 @@ class Reduction {
     }
     for (int pass = 0; pass < kRemovalPasses && remove_keys(); ++pass) {
     }
+    measure_all();
+    while (exact && turn_exactly(exact))
+      while (repair()) {
+      }
   }
 
   /// Of all nodes and frames.
@@ -273,6 +277,23 @@ class Reduction {
     for (int g = curve.keys[first]; g <= curve.keys[last]; ++g) move(curve, g);
   }
 
+  /// Puts back the keys of rotations that have to be exact; false where all are.
+  bool turn_exactly(const ExactRotations& exact) {
+    constexpr double kSame = 1e-9;
+    bool mended = false;
+    for (int f = 0; f < frames(); ++f)
+      for (const int node : exact(static_cast<std::size_t>(f), local_[f]))
+        for (const std::size_t i : by_node_[node]) {
+          KeyCurve& curve = curves_[i];
+          if (curve.path != TrackPath::rotation || curve.is_single() ||
+              distance(curve.path, curve.reduced[f], curve.wanted[f]) <= kSame)
+            continue;
+          make_exact(curve, f);
+          mended = true;
+        }
+    return mended;
+  }
+
   // ---- keys taken away
 
   bool remove_keys() {
@@ -361,7 +382,7 @@ void keep_duration(std::vector<KeyCurve>& curves, const Skeleton& skeleton, cons
 }  // namespace
 
 ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Similarity& world_from_file,
-                        const KeyReduction& settings) {
+                        const KeyReduction& settings, const ExactRotations& exact) {
   ReducedClip result{clip.name, {}, 0, 0.0, clip.marks, settings.short_rotations};
   if (clip.frames.empty()) return result;
   const Rig rig(skeleton, clip, world_from_file);
@@ -371,7 +392,7 @@ ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Simila
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     curves = all;
     Reduction reduction(skeleton, clip, rig, curves);
-    if (settings.enabled && bound_m > 0.0) reduction.run(bound_m);
+    if (settings.enabled && bound_m > 0.0) reduction.run(bound_m, exact);
     if (settings.short_rotations) round_rotations(curves);
     result.error_m = reduction.error_m();
     if (!settings.enabled || result.error_m <= settings.tolerance_m || bound_m <= 0.0) break;

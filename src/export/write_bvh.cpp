@@ -1,8 +1,11 @@
 // BVH: the hierarchy of a BVH source as it was, or one of our own from the humanoid's joints.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "base/errors.h"
 #include "export/euler.h"
@@ -24,10 +27,17 @@ struct BvhFile {
   std::vector<BvhJoint> joints;
   std::vector<Pose> frames;
   double frame_time_s = 0.0;
+  bool positions_add = false;             // see BvhSource
+  std::optional<double> metres_per_unit;  // said in the file
+};
+
+/// A node of the character as a joint of the BVH.
+struct ChosenNode {
+  int node = -1;
+  int parent = -1;  // index among the chosen
 };
 
 // ---- text
-// ------------------------------------------------------------------------------------------------------
 
 void put(std::string& out, double value) {
   char text[32];
@@ -48,8 +58,9 @@ std::string_view channel_name(BvhChannel channel) {
   return kNames[static_cast<std::size_t>(channel)];
 }
 
+/// Puts a joint and all below it. The unit is said once, at the first End Site.
 void put_joint(std::string& out, const BvhFile& file, const std::vector<std::vector<int>>& below, int joint,
-               int depth) {
+               int depth, bool& unit_said) {
   const BvhJoint& j = file.joints[joint];
   const std::string indent(static_cast<std::size_t>(depth), '\t');
   out += indent + (j.parent < 0 ? "ROOT " : "JOINT ") + j.name + '\n' + indent + "{\n" + indent + "\tOFFSET";
@@ -57,9 +68,15 @@ void put_joint(std::string& out, const BvhFile& file, const std::vector<std::vec
   out += '\n' + indent + "\tCHANNELS " + std::to_string(j.channels.size());
   for (const BvhChannel channel : j.channels) (out += ' ') += channel_name(channel);
   out += '\n';
-  for (const int child : below[joint]) put_joint(out, file, below, child, depth + 1);
+  for (const int child : below[joint]) put_joint(out, file, below, child, depth + 1, unit_said);
   if (j.end_site) {
-    out += indent + "\tEnd Site\n" + indent + "\t{\n" + indent + "\t\tOFFSET";
+    out += indent + "\tEnd Site";
+    if (file.metres_per_unit && !std::exchange(unit_said, true)) {
+      out += " unit=";
+      put(out, *file.metres_per_unit);
+      out += "m,up=y";
+    }
+    out += '\n' + indent + "\t{\n" + indent + "\t\tOFFSET";
     put(out, *j.end_site);
     out += '\n' + indent + "\t}\n";
   }
@@ -67,7 +84,6 @@ void put_joint(std::string& out, const BvhFile& file, const std::vector<std::vec
 }
 
 // ---- rows
-// --------------------------------------------------------------------------------------------------------
 
 bool is_rotation(BvhChannel channel) { return channel >= BvhChannel::x_rotation; }
 int axis_of(BvhChannel channel) { return static_cast<int>(channel) % 3; }
@@ -110,9 +126,11 @@ void put_rows(std::string& out, const BvhFile& file) {
     for (std::size_t j = 0; j < file.joints.size(); ++j) {
       const Vec3& turn = angles[j].of(frame[j].rotation);
       int next = 0;
+      const bool add = file.positions_add && file.joints[j].parent >= 0;
+      const Vec3 place = frame[j].translation - (add ? file.joints[j].offset : Vec3(Vec3::Zero()));
       for (const BvhChannel channel : file.joints[j].channels) {
         if (out.size() > start) out += ' ';
-        put(out, is_rotation(channel) ? degrees(turn[next++]) : frame[j].translation[axis_of(channel)]);
+        put(out, is_rotation(channel) ? degrees(turn[next++]) : place[axis_of(channel)]);
       }
     }
     out += '\n';
@@ -124,8 +142,9 @@ std::string text_of(const BvhFile& file) {
   for (std::size_t j = 0; j < file.joints.size(); ++j)
     if (file.joints[j].parent >= 0) below[file.joints[j].parent].push_back(static_cast<int>(j));
   std::string out = "HIERARCHY\n";
+  bool unit_said = false;
   for (std::size_t j = 0; j < file.joints.size(); ++j)
-    if (file.joints[j].parent < 0) put_joint(out, file, below, static_cast<int>(j), 0);
+    if (file.joints[j].parent < 0) put_joint(out, file, below, static_cast<int>(j), 0, unit_said);
   out += "MOTION\nFrames: " + std::to_string(file.frames.size()) + "\nFrame Time: ";
   put(out, file.frame_time_s);
   out += '\n';
@@ -133,27 +152,90 @@ std::string text_of(const BvhFile& file) {
   return out;
 }
 
-// ---- the source's hierarchy
-// ------------------------------------------------------------------------------------------
+// ---- what a hierarchy of fixed bones cannot hold
 
-BvhFile file_of_source(const Character& character, const Clip& clip) {
-  BvhFile file{{}, clip.frames, 1.0 / clip.fps};
+/// The joint that lies farthest from its place.
+struct Misfit {
+  double distance = 0.0;  // units of the file
+  std::string joint;
+
+  void note(double away, const std::string& name) {
+    if (away <= distance * (1.0 + 1e-9)) return;  // the first of those that hang on one another
+    distance = away;
+    joint = name;
+  }
+
+  /// `row`: local transforms of the joints; `places`: where the nodes are.
+  void look_at(const BvhFile& file, const Pose& row, const std::vector<ChosenNode>& chosen,
+               const std::vector<Vec3>& places) {
+    std::vector<Affine> world(row.size());
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      world[j] = row[j].affine();
+      if (chosen[j].parent >= 0) world[j] = world[static_cast<std::size_t>(chosen[j].parent)] * world[j];
+      note((world[j].translation() - places[static_cast<std::size_t>(chosen[j].node)]).norm(),
+           file.joints[j].name);
+    }
+  }
+
+  /// Lengths that differ from the rest's where nothing can say so.
+  void look_at(const BvhFile& file, const Pose& row) {
+    for (std::size_t j = 0; j < row.size(); ++j)
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto& channels = file.joints[j].channels;
+        const bool has_channel =
+            std::find(channels.begin(), channels.end(), static_cast<BvhChannel>(axis)) != channels.end();
+        if (!has_channel)
+          note(std::abs(row[j].translation[axis] - file.joints[j].offset[axis]), file.joints[j].name);
+      }
+  }
+
+  void warn(const Character& character, double unit_m, Diagnostics& diagnostics) const {
+    constexpr double kNoticed_m = 0.0005;
+    if (distance * unit_m <= kNoticed_m) return;
+    diagnostics.warn(
+        character.path.string(),
+        fmt::format("the BVH holds '{}' up to {:.1f} mm away from its place: its bones keep their "
+                    "lengths, and only joints with position channels move",
+                    joint, 1000.0 * distance * unit_m));
+  }
+};
+
+// ---- the source's hierarchy
+
+bool has_all_positions(const BvhJoint& joint) {
+  return std::count_if(joint.channels.begin(), joint.channels.end(),
+                       [](BvhChannel channel) { return !is_rotation(channel); }) == 3;
+}
+
+/// Moves the way of hips without position channels onto the nearest joint above that has them.
+void lift_hips(const std::vector<BvhJoint>& joints, int hips, Pose& frame) {
+  Vec3 shift = frame[hips].translation - joints[hips].offset;
+  for (int above = joints[hips].parent; above >= 0; above = joints[above].parent) {
+    shift = frame[above].rotation * shift;
+    if (!has_all_positions(joints[above])) continue;
+    frame[above].translation += shift;
+    frame[hips].translation = joints[hips].offset;
+    return;
+  }
+}
+
+BvhFile file_of_source(const Character& character, const Humanoid& humanoid, const Clip& clip,
+                       Diagnostics& diagnostics) {
+  BvhFile file{{}, clip.frames, 1.0 / clip.fps, character.bvh->positions_add, character.metres_per_unit};
   for (int i = 0; i < character.skeleton.size(); ++i) {
     const Node& node = character.skeleton.nodes[i];
     file.joints.push_back({node.name, node.parent, node.rest.translation, character.bvh->channels[i],
                            character.bvh->end_site[i]});
   }
+  if (humanoid.root >= 0 && !has_all_positions(file.joints[humanoid.root]))
+    for (Pose& frame : file.frames) lift_hips(file.joints, humanoid.root, frame);
+  Misfit misfit;
+  for (const Pose& frame : file.frames) misfit.look_at(file, frame);
+  misfit.warn(character, humanoid.world_from_file.scale, diagnostics);
   return file;
 }
 
 // ---- a hierarchy of our own
-// ------------------------------------------------------------------------------------------
-
-/// A node of the character as a joint of the BVH.
-struct ChosenNode {
-  int node = -1;
-  int parent = -1;  // index among the chosen
-};
 
 /// Node of the nearest segment above that has one.
 int node_above(const Humanoid& humanoid, Segment segment) {
@@ -164,16 +246,17 @@ int node_above(const Humanoid& humanoid, Segment segment) {
   return humanoid.root;
 }
 
-/// Parent of every node that becomes a joint; -2 for the others. What does not hang below the root hangs on
-/// the segment above.
+/// Parent of every node that becomes a joint; -2 for the others. What the segment above does not carry hangs
+/// on it all the same.
 std::vector<int> chosen_parents(const Skeleton& skeleton, const Humanoid& humanoid) {
   std::vector<int> parent(skeleton.nodes.size(), -2);
   parent[humanoid.root] = -1;
   for (int s = 0; s < kSegmentCount; ++s) {
     const std::vector<int>& chain = humanoid.segments[s].chain;
     for (std::size_t k = 0; k < chain.size(); ++k) {
-      if (skeleton.is_ancestor(humanoid.root, chain[k])) {
-        for (int i = chain[k]; i != humanoid.root; i = skeleton.nodes[i].parent)
+      const bool hangs_elsewhere = k == 0 && humanoid.segments[s].detached;
+      if (skeleton.is_ancestor(humanoid.root, chain[k]) && !hangs_elsewhere) {
+        for (int i = chain[k]; i != humanoid.root && parent[i] == -2; i = skeleton.nodes[i].parent)
           parent[i] = skeleton.nodes[i].parent;
       } else if (chain[k] != humanoid.root) {
         parent[chain[k]] = k > 0 ? chain[k - 1] : node_above(humanoid, segment_at(s));
@@ -202,6 +285,39 @@ std::vector<Quat> world_rotations(const Skeleton& skeleton, const Humanoid& huma
   return result;
 }
 
+/// How nodes have turned in the y-up world since a pose.
+class WorldTurns {
+ public:
+  WorldTurns(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& zero)
+      : skeleton_(skeleton), humanoid_(humanoid), zero_(world_rotations(skeleton, humanoid, zero)) {
+    const std::vector<Affine> world = world_transforms(skeleton, zero);
+    mirrored_ = std::any_of(world.begin(), world.end(),
+                            [](const Affine& m) { return m.linear().determinant() < 0.0; });
+    if (mirrored_) zero_world_ = world;
+  }
+
+  std::vector<Quat> of(const Pose& pose) const {
+    std::vector<Quat> turns = world_rotations(skeleton_, humanoid_, pose);
+    const std::vector<Affine> world = mirrored_ ? world_transforms(skeleton_, pose) : std::vector<Affine>();
+    const Quat& upright = humanoid_.world_from_file.rotation;
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      if (!mirrored_)
+        turns[i] = turns[i] * zero_[i].conjugate();
+      else  // below a mirror rotations turn the other way: only the whole matrices say how
+        turns[i] = upright * rotation_part(world[i].linear() * zero_world_[i].linear().inverse()) *
+                   upright.conjugate();
+    }
+    return turns;
+  }
+
+ private:
+  const Skeleton& skeleton_;
+  const Humanoid& humanoid_;
+  std::vector<Quat> zero_;
+  std::vector<Affine> zero_world_;
+  bool mirrored_ = false;
+};
+
 std::vector<Vec3> world_positions(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& pose,
                                   double unit_m) {
   std::vector<Vec3> result;
@@ -221,11 +337,19 @@ int tip_of(const Skeleton& skeleton, const Humanoid& humanoid, int node) {
   return -1;
 }
 
-/// Readers split names at blanks and braces.
-std::string plain_name(std::string name) {
-  for (char& c : name)
-    if (static_cast<unsigned char>(c) <= ' ' || c == '{' || c == '}') c = '_';
-  return name;
+/// Names of joints: those of their nodes, whatever meshes are called; a node's number where two bones share
+/// one.
+std::vector<std::string> joint_names(const Skeleton& skeleton, const std::vector<ChosenNode>& chosen) {
+  std::vector<char> is_chosen(skeleton.nodes.size(), 0);
+  for (const ChosenNode& c : chosen) is_chosen[static_cast<std::size_t>(c.node)] = 1;
+  const std::map<std::string, int> by_name = nodes_by_plain_name(skeleton, is_chosen);
+  std::vector<std::string> names;
+  for (const ChosenNode& c : chosen) {
+    const std::string name = plain_name(skeleton.nodes[c.node].name);
+    const auto found = by_name.find(name);
+    names.push_back(found != by_name.end() && found->second == c.node ? name : fmt::format("#{}", c.node));
+  }
+  return names;
 }
 
 std::vector<BvhJoint> own_joints(const Character& character, const Humanoid& humanoid,
@@ -233,10 +357,10 @@ std::vector<BvhJoint> own_joints(const Character& character, const Humanoid& hum
   using enum BvhChannel;
   const Skeleton& skeleton = character.skeleton;
   std::vector<bool> is_leaf(chosen.size(), true);
+  const std::vector<std::string> names = joint_names(skeleton, chosen);
   std::vector<BvhJoint> joints;
   for (const ChosenNode& c : chosen) {
-    BvhJoint joint{
-        plain_name(skeleton.label(c.node)), c.parent, Vec3::Zero(), {z_rotation, y_rotation, x_rotation}, {}};
+    BvhJoint joint{names[joints.size()], c.parent, Vec3::Zero(), {z_rotation, y_rotation, x_rotation}, {}};
     if (c.parent < 0)
       joint.channels = {x_position, y_position, z_position, z_rotation, y_rotation, x_rotation};
     else
@@ -253,6 +377,17 @@ std::vector<BvhJoint> own_joints(const Character& character, const Humanoid& hum
   return joints;
 }
 
+/// Moves a detached segment to where it is in `first`, seen from the node above it.
+void hang_as_in(const Skeleton& skeleton, const Humanoid& humanoid, Segment segment, const Pose& first,
+                Pose& pose) {
+  const int node = humanoid.segments[index(segment)].chain.front(), parent = skeleton.nodes[node].parent;
+  const int above = node_above(humanoid, segment);
+  const std::vector<Affine> there = world_transforms(skeleton, first),
+                            here = world_transforms(skeleton, pose);
+  const Vec3 place = here[above] * (there[above].inverse() * there[node].translation());
+  pose[node].translation = parent < 0 ? place : Vec3(here[parent].inverse() * place);
+}
+
 /// The reference pose with the lengths that the bones have in the clip, which started perhaps from a moment
 /// of another motion.
 Pose zero_pose(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& first) {
@@ -265,30 +400,38 @@ Pose zero_pose(const Skeleton& skeleton, const Humanoid& humanoid, const Pose& f
     pose[i].scale = first[i].scale;
     if (!moves[i] && skeleton.is_ancestor(humanoid.root, i)) pose[i].translation = first[i].translation;
   }
+  for (int s = 1; s < kSegmentCount; ++s)
+    if (humanoid.segments[s].detached) hang_as_in(skeleton, humanoid, segment_at(s), first, pose);
   return pose;
 }
 
-BvhFile own_file(const Character& character, const Humanoid& humanoid, const Clip& clip, double unit_m) {
+BvhFile own_file(const Character& character, const Humanoid& humanoid, const Clip& clip, double unit_m,
+                 Diagnostics& diagnostics) {
   const Skeleton& skeleton = character.skeleton;
   const Pose reference = zero_pose(skeleton, humanoid, clip.frames.front());
-  const std::vector<Quat> zero = world_rotations(skeleton, humanoid, reference);
+  const WorldTurns turns(skeleton, humanoid, reference);
   std::vector<ChosenNode> chosen;
   choose(chosen_parents(skeleton, humanoid), {humanoid.root, -1}, chosen);
+  Misfit misfit;
   BvhFile file;
   file.frame_time_s = 1.0 / clip.fps;
+  file.metres_per_unit = unit_m;
   file.joints =
       own_joints(character, humanoid, chosen, world_positions(skeleton, humanoid, reference, unit_m));
   for (const Pose& pose : clip.frames) {
-    const std::vector<Quat> now = world_rotations(skeleton, humanoid, pose);
+    const std::vector<Quat> turn = turns.of(pose);
+    const std::vector<Vec3> places = world_positions(skeleton, humanoid, pose, unit_m);
     Pose row(chosen.size());
     for (std::size_t j = 0; j < chosen.size(); ++j) {
-      const auto turn = [&](int node) { return Quat(now[node] * zero[node].conjugate()); };
-      const Quat above = chosen[j].parent < 0 ? Quat::Identity() : turn(chosen[chosen[j].parent].node);
-      row[j].rotation = above.conjugate() * turn(chosen[j].node);
+      const Quat above = chosen[j].parent < 0 ? Quat::Identity() : turn[chosen[chosen[j].parent].node];
+      row[j].rotation = above.conjugate() * turn[chosen[j].node];
+      row[j].translation = file.joints[j].offset;
     }
-    row[0].translation = world_positions(skeleton, humanoid, pose, unit_m)[humanoid.root];
+    row[0].translation = places[humanoid.root];
+    misfit.look_at(file, row, chosen, places);
     file.frames.push_back(std::move(row));
   }
+  misfit.warn(character, unit_m, diagnostics);
   return file;
 }
 
@@ -314,10 +457,10 @@ Status check(const Character& character, const Humanoid& humanoid, const Clip& c
 }  // namespace
 
 Result<std::string> write_bvh(const Character& character, const Humanoid& humanoid, const Clip& clip,
-                              const BvhOptions& options) {
+                              const BvhOptions& options, Diagnostics& diagnostics) {
   if (const Status status = check(character, humanoid, clip, options); !status) return status.error();
-  return text_of(character.bvh ? file_of_source(character, clip)
-                               : own_file(character, humanoid, clip, options.metres_per_unit));
+  return text_of(character.bvh ? file_of_source(character, humanoid, clip, diagnostics)
+                               : own_file(character, humanoid, clip, options.metres_per_unit, diagnostics));
 }
 
 }  // namespace ukemi

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "humanoid/names.h"
+#include "bones/names.h"
 
 namespace ukemi {
 namespace {
@@ -36,31 +36,73 @@ struct Assembler {
     return common_ancestor(skeleton, left, right);
   }
 
+  /// Height in the rest pose along the trunk, from the hips (0) to the shoulders (1).
+  double rise_of(int node) const {
+    const auto middle = [&](Segment l, Segment r) { return Vec3(0.5 * (rest[bones[l]] + rest[bones[r]])); };
+    const Vec3 hips = middle(Segment::thigh_l, Segment::thigh_r);
+    const Vec3 trunk = middle(Segment::upperarm_l, Segment::upperarm_r) - hips;
+    return trunk.squaredNorm() > 0.0 ? (rest[node] - hips).dot(trunk) / trunk.squaredNorm() : 0.0;
+  }
+
+  /// The bone of a neck by its name, or by lying above the shoulders.
+  bool is_neck(int node) const {
+    constexpr double kAboveShoulders = 1.06;
+    const NameReading reading = read_name(skeleton.nodes[node].name);
+    if (fit(reading, Part::spine) > 0) return false;
+    return fit(reading, Part::neck) > 0 || rise_of(node) > kAboveShoulders;
+  }
+
+  /// Bones from the pelvis to the chest: up to where the arms hang, without necks that carry them; where the
+  /// arms hang on the pelvis itself, up to the neck.
+  std::vector<int> spine_bones() const {
+    const int pelvis = bones[Segment::pelvis], user = bones[Segment::chest];
+    const int fork = user >= 0 ? user : arms_fork();
+    const auto between = [&](int top) {
+      std::vector<int> path = path_below(skeleton, common_ancestor(skeleton, pelvis, top), top);
+      std::erase_if(path, [&](int node) {
+        return is_at_or_below(skeleton, node, pelvis) ||
+               is_at_or_below(skeleton, node, bones[Segment::thigh_l]) ||
+               is_at_or_below(skeleton, node, bones[Segment::thigh_r]) ||
+               read_name(skeleton.nodes[node].name).helper;
+      });
+      return path;
+    };
+    std::vector<int> spine = fork >= 0 ? between(fork) : std::vector<int>();
+    if (user >= 0) return spine;
+    if (spine.empty()) {
+      spine = between(bones[Segment::head]);
+      std::erase(spine, bones[Segment::head]);
+      while (!spine.empty() && is_neck(spine.back())) spine.pop_back();
+    }
+    while (spine.size() > 1 && is_neck(spine.back())) spine.pop_back();
+    return spine;
+  }
+
   void trunk() {
     const int pelvis = bones[Segment::pelvis];
-    const int fork = bones[Segment::chest] >= 0 ? bones[Segment::chest] : arms_fork();
+    const std::vector<int> spine = spine_bones();
     humanoid.root = pelvis;
-    for (const int node : {bones[Segment::thigh_l], bones[Segment::thigh_r], fork})
+    for (const int node :
+         {bones[Segment::thigh_l], bones[Segment::thigh_r], spine.empty() ? arms_fork() : spine.back()})
       if (const int above = common_ancestor(skeleton, humanoid.root, node); above >= 0) humanoid.root = above;
     single(Segment::pelvis);
-    if (fork < 0) return;
-    const int top = common_ancestor(skeleton, pelvis, fork);
-    std::vector<int> spine = path_below(skeleton, top, fork);
-    std::erase_if(spine, [&](int node) {
-      return is_at_or_below(skeleton, node, pelvis) ||
-             is_at_or_below(skeleton, node, bones[Segment::thigh_l]) ||
-             is_at_or_below(skeleton, node, bones[Segment::thigh_r]) ||
-             read_name(skeleton.nodes[node].name).helper;
-    });
     if (spine.empty()) return;
     auto split = spine.begin() + static_cast<std::ptrdiff_t>(spine.size() / 2);
     if (const auto user = std::find(spine.begin(), spine.end(), bones[Segment::abdomen]);
         user != spine.end() && user + 1 != spine.end())
       split = user + 1;
-    const std::string by = bones.by[index(Segment::pelvis)];
-    const auto how = [&](Segment s) { return bones[s] >= 0 ? bones.by[index(s)] : by; };
-    if (split != spine.begin()) at(Segment::abdomen) = {{spine.begin(), split}, false, how(Segment::abdomen)};
-    at(Segment::chest) = {{split, spine.end()}, false, how(Segment::chest)};
+    if (split != spine.begin()) at(Segment::abdomen) = {{spine.begin(), split}, false, {}};
+    at(Segment::chest) = {{split, spine.end()}, false, {}};
+    for (const Segment s : {Segment::abdomen, Segment::chest}) at(s).by = source_of_spine(s);
+  }
+
+  /// How a part of the spine was found: what the user did not name is not by the user.
+  std::string source_of_spine(Segment s) {
+    if (at(s).fused()) return {};
+    if (at(s).node() == bones[s]) return bones.by[index(s)];
+    const std::string& pelvis = bones.by[index(Segment::pelvis)];
+    if (pelvis != "user") return pelvis;
+    return fit(read_name(skeleton.nodes[at(s).node()].name), Part::spine) > 0 ? "name" : "topology";
   }
 
   void head() {
@@ -69,8 +111,8 @@ struct Assembler {
     const int fork = common_ancestor(skeleton, chest, head);
     std::vector<int> chain = fork >= 0 ? path_below(skeleton, fork, head) : std::vector<int>{head};
     std::erase_if(chain, [&](int node) {
-      return is_at_or_below(skeleton, node, bones[Segment::upperarm_l]) ||
-             is_at_or_below(skeleton, node, bones[Segment::upperarm_r]);
+      return !is_neck(node) && (is_at_or_below(skeleton, node, bones[Segment::upperarm_l]) ||
+                                is_at_or_below(skeleton, node, bones[Segment::upperarm_r]));
     });
     if (chain.empty()) chain = {head};
     at(Segment::head) = {chain, false, bones.by[index(Segment::head)]};
@@ -89,13 +131,21 @@ struct Assembler {
     }
   }
 
+  /// A segment is detached where the one above does not carry it: it hangs elsewhere (IK-driven feet), or on
+  /// a bone of a third segment (clavicles on a neck).
   void mark_detached() {
+    std::vector<int> owner(skeleton.nodes.size(), -1);
+    for (int s = 0; s < kSegmentCount; ++s)
+      for (const int node : humanoid.segments[s].chain) owner[node] = s;
     for (int s = 1; s < kSegmentCount; ++s) {
       SegmentNodes& segment = humanoid.segments[s];
       if (segment.fused()) continue;
       const Segment above = humanoid.carrier(parent_of(segment_at(s)));
-      const int holder = above == Segment::pelvis ? humanoid.root : humanoid.segments[index(above)].node();
-      segment.detached = !skeleton.is_ancestor(holder, segment.chain.front());
+      const int holder = humanoid.holder_of(segment_at(s));
+      int node = skeleton.nodes[segment.chain.front()].parent;
+      while (node >= 0 && node != holder && (owner[node] < 0 || owner[node] == index(above)))
+        node = skeleton.nodes[node].parent;
+      segment.detached = node != holder;
     }
   }
 
@@ -202,6 +252,11 @@ struct Assembler {
 Segment Humanoid::carrier(Segment s) const {
   while (s != Segment::pelvis && segments[index(s)].fused()) s = parent_of(s);
   return s;
+}
+
+int Humanoid::holder_of(Segment s) const {
+  const Segment above = carrier(parent_of(s));
+  return above == Segment::pelvis ? root : segments[index(above)].node();
 }
 
 void assemble(const Character& character, const Bones& bones, Humanoid& humanoid) {

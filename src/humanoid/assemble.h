@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/character.h"
-#include "humanoid/bones.h"
+#include "bones/bones.h"
 #include "humanoid/humanoid.h"
 
 namespace ukemi {

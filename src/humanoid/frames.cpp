@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "bones/bones.h"
+#include "bones/names.h"
 #include "humanoid/assemble.h"
-#include "humanoid/bones.h"
 #include "humanoid/landmarks.h"
 #include "humanoid/reference.h"
 #include "humanoid/refine.h"
@@ -17,7 +18,6 @@ namespace ukemi {
 namespace {
 
 // --- size
-// ----------------------------------------------------------------------------------------------------
 
 /// Distance from the head joint to the node or BVH end site that marks the crown; 0 where there is none.
 double head_length(const Character& character, const Humanoid& humanoid, const Landmarks& f) {
@@ -29,10 +29,33 @@ double head_length(const Character& character, const Humanoid& humanoid, const L
   return 0.0;
 }
 
+/// From the lowest skin of the feet to the highest of the head. Arms, props, wings and the ground do not
+/// count, nor do ears, hair and hats that have bones of their own, except where the head has no other skin.
+SkinExtent body_extent(const Character& character, const Humanoid& humanoid, const Landmarks& f,
+                       const Vec3& up) {
+  const Skeleton& skeleton = character.skeleton;
+  const int head = humanoid.segments[index(Segment::head)].node();
+  const auto owner = segments_of_nodes(skeleton, humanoid);
+  const std::vector<char> skinned = skin_joints(character);
+  const auto is_head = [&](int node) {
+    return owner[node] == Segment::head && (!skinned[node] || !skeleton.is_ancestor(head, node));
+  };
+  const auto is_low = [&](int node) {
+    const Segment left = humanoid.carrier(Segment::foot_l), right = humanoid.carrier(Segment::foot_r);
+    return owner[node] == left || owner[node] == right;
+  };
+  SkinExtent crown = skin_extent(character, f.world, up, is_head);
+  if (!crown.found)
+    crown = skin_extent(character, f.world, up, [&](int node) { return owner[node] == Segment::head; });
+  const SkinExtent soles = skin_extent(character, f.world, up, is_low);
+  return {crown.found && soles.found, soles.min, crown.max};
+}
+
 /// Sole to crown, file units. From the skin where its extent fits the skeleton, else from the bones: hip to
 /// ankle is 0.491 of the height (de Leva 1996), ankle to head joint 0.84 to 0.91 of it over the rigs that
 /// were looked at.
-double height_in_file(const Character& character, const Humanoid& humanoid, const Reference& reference) {
+double height_in_file(const Character& character, const Humanoid& humanoid, const Reference& reference,
+                      Diagnostics& diagnostics) {
   const Landmarks f(character, humanoid, reference.pose);
   double legs = 0.0;
   for (int side = 0; side < 2; ++side)
@@ -43,14 +66,14 @@ double height_in_file(const Character& character, const Humanoid& humanoid, cons
   double height = 0.65 * body / 0.8625 + 0.35 * legs / 0.491;
   const double top = head_length(character, humanoid, f);
   if (top > 0.05 * body && top < 0.6 * body) height = std::max(height, (body + top) / 0.955);
-  // Ears, hair and hats that have bones of their own do not count.
-  const int head_node = humanoid.segments[index(Segment::head)].node();
-  const std::vector<char> skinned = skin_joints(character);
-  const SkinExtent extent = skin_extent(character, f.world, reference.up, [&](int node) {
-    return !skinned[node] || !character.skeleton.is_ancestor(head_node, node);
-  });
+  const SkinExtent extent = body_extent(character, humanoid, f, reference.up);
   const double skin_height = extent.max - extent.min;
-  if (extent.found && skin_height > 0.85 * height && skin_height < 2.1 * height) return skin_height;
+  if (!extent.found) return height;
+  if (skin_height > 0.85 * height && skin_height < 2.1 * height) return skin_height;
+  diagnostics.warn(character.path.string(),
+                   fmt::format("the skin is {:.2g} times as tall as its skeleton; the height is that of the "
+                               "skeleton: --height sets it",
+                               skin_height / height));
   return height;
 }
 
@@ -60,16 +83,30 @@ struct Unit {
 };
 
 // A stated unit is believed for a child and for a tall cartoon; asset packs of any other size mean humans,
-// and a blow of human strength would do nothing to a body of two tonnes.
-constexpr double kShortest = 0.3;  // m
-constexpr double kTallest = 3.0;   // m
+// and a blow of human strength would do nothing to a body of two tonnes. glTF 2.0 section 3.4: "all linear
+// distances are metres".
+constexpr double kShortest = 0.3;                          // m
+constexpr double kTallest = 3.0;                           // m
+constexpr double kLeastHeight = 0.05, kMostHeight = 50.0;  // m: what can be simulated
+constexpr double kShortHuman = 1.3, kTallHuman = 2.2;      // m: beyond them a warning
 
-/// The unit that makes the figure a human of 1.7 m.
-Unit guess_unit(const Character& character, double height) {
-  constexpr double kCmu = 0.056444;  // cgspeed conversions of the CMU data: 1/0.45 inches
-  if (character.format == SourceFormat::gltf && height >= kShortest && height <= kTallest) return {1.0, {}};
+struct UnitChoice {
+  double metres;
+  double shortest, tallest;  // m, of a figure that may have been drawn in it
+};
+// The metric ones first: children and cartoons are drawn in them.
+constexpr UnitChoice kUnits[] = {{1.0, 0.8, 2.4}, {0.01, 0.8, 2.4}, {0.001, 1.2, 2.4}};
+constexpr double kCmu = 0.056444;  // m: cgspeed conversions of the CMU data, 1/0.45 inches
+constexpr double kOtherUnits[] = {0.0254, 0.1, kCmu, 0.01 * kCmu, 10.0, 100.0, 1000.0};
+
+/// The unit that makes the figure a human: metres, centimetres or millimetres, else the one that brings it
+/// nearest to 1.7 m.
+Unit guess_unit(double height) {
+  for (const UnitChoice& unit : kUnits)
+    if (const double metres = unit.metres * height; metres >= unit.shortest && metres <= unit.tallest)
+      return {unit.metres, {}};
   double best = 0.0, best_error = 1e300;
-  for (const double unit : {1.0, 0.01, 0.0254, 0.001, 0.1, kCmu, 0.01 * kCmu}) {
+  for (const double unit : kOtherUnits) {
     const double metres = unit * height;
     const double error = std::abs(std::log(metres / 1.7));
     if (metres >= 1.2 && metres <= 2.4 && error < best_error) {
@@ -84,37 +121,96 @@ Unit guess_unit(const Character& character, double height) {
                       height)};
 }
 
+std::optional<double> stated_unit(const Character& character) {
+  if (character.metres_per_unit) return character.metres_per_unit;
+  if (character.format == SourceFormat::gltf) return 1.0;
+  return std::nullopt;
+}
+
 Unit choose_unit(const Character& character, const HumanoidOptions& options, double height) {
   if (options.height_m) return {*options.height_m / height, {}};
   if (options.metres_per_unit) return {*options.metres_per_unit, {}};
-  if (character.metres_per_unit) {
-    const double metres = *character.metres_per_unit * height;
-    if (metres >= kShortest && metres <= kTallest) return {*character.metres_per_unit, {}};
-    Unit unit = guess_unit(character, height);
+  const auto stated = stated_unit(character);
+  const bool believed = stated && *stated * height >= kShortest && *stated * height <= kTallest;
+  Unit unit = believed ? Unit{*stated, {}} : guess_unit(height);
+  const double metres = unit.metres * height;
+  if (stated && !believed)
     unit.warning = fmt::format(
         "the file's unit ({} m) would make the character {:.3g} m tall; one unit is taken as "
         "{:.4g} m: --unit or --height sets it",
-        *character.metres_per_unit, metres, unit.metres);
-    return unit;
-  }
-  return guess_unit(character, height);
+        *stated, *stated * height, unit.metres);
+  else if (metres < kShortHuman || metres > kTallHuman)
+    unit.warning = fmt::format(
+        "the character is {:.2f} m tall, one file unit being {:.4g} m{}: --unit or --height sets it", metres,
+        unit.metres, stated ? "" : " (a guess)");
+  return unit;
 }
 
-Vec3 choose_up(const Character& character, const HumanoidOptions& options, const Vec3& guess,
-               Diagnostics& diagnostics) {
-  if (options.up_axis) return Vec3::Unit(*options.up_axis - 'x');
-  if (character.yup_from_file) {
-    const Vec3 stated = character.yup_from_file->conjugate() * Vec3::UnitY();
-    if (stated.dot(guess) > 0.9) return stated;
-    diagnostics.warn(character.path.string(),
-                     "the character does not stand along the file's up axis; up is taken from "
-                     "its feet to its head: --up sets it");
+// --- sides
+
+std::optional<Vec3> toe_place(const Character& character, const Humanoid& humanoid, const Landmarks& f,
+                              int side) {
+  if (humanoid.toes[side] >= 0) return Vec3(f.world[humanoid.toes[side]].translation());
+  const int node = humanoid.segments[index(kFoot[side])].node();
+  if (node >= 0 && character.bvh && character.bvh->end_site[node])
+    return f.world[node] * *character.bvh->end_site[node];
+  return std::nullopt;
+}
+
+/// Of the length of the legs: how far both toes together must lie before or behind the ankles.
+constexpr double kClearlyForward = 0.1;
+
+/// How far the feet point forwards in a pose, of the length of a leg, both together; by the line of the hips
+/// and the rise of the trunk, wherever the figure lies.
+double toes_forward(const Character& character, const Humanoid& humanoid, const Landmarks& f) {
+  const Vec3 rise = (f.shoulders() - f.hips()).normalized();
+  const Vec3 anterior = rise.cross(f.link(Segment::thigh_l, Segment::thigh_r)).normalized();
+  double sum = 0.0;
+  for (int side = 0; side < 2; ++side) {
+    const double leg = f.link(kThigh[side], kShank[side]).norm() + f.link(kShank[side], kFoot[side]).norm();
+    if (const auto toe = toe_place(character, humanoid, f, side); toe && leg > 0.0)
+      sum += (*toe - f[kFoot[side]]).dot(anterior) / leg;
   }
-  return guess;
+  return sum;
+}
+
+/// The same from the skin around the foot bones: how much farther it reaches forwards than backwards.
+double skin_forward(const Character& character, const Humanoid& humanoid, const Landmarks& f) {
+  const Vec3 rise = (f.shoulders() - f.hips()).normalized();
+  const Vec3 anterior = rise.cross(f.link(Segment::thigh_l, Segment::thigh_r)).normalized();
+  double sum = 0.0;
+  for (int side = 0; side < 2; ++side) {
+    const int foot = humanoid.segments[index(kFoot[side])].node();
+    if (foot < 0) continue;
+    const SkinExtent extent = skin_extent(character, f.world, anterior, [&](int node) {
+      return is_at_or_below(character.skeleton, foot, node);
+    });
+    const double leg = f.link(kThigh[side], kShank[side]).norm() + f.link(kShank[side], kFoot[side]).norm();
+    if (extent.found && leg > 0.0)
+      sum += (extent.max + extent.min - 2.0 * f[kFoot[side]].dot(anterior)) / leg;
+  }
+  return sum;
+}
+
+/// How clearly the feet point forwards (> 0) or backwards: of a character in its reference pose, of a motion
+/// in the mean of its frames.
+double feet_forward(const Character& character, const Humanoid& humanoid, const Reference& reference) {
+  constexpr int kMostFrames = 100;
+  if (!only_motion(character)) {
+    const Landmarks figure(character, humanoid, reference.pose);
+    const double toes = toes_forward(character, humanoid, figure);
+    return std::abs(toes) < kClearlyForward ? skin_forward(character, humanoid, figure) : toes;
+  }
+  double sum = 0.0;
+  const std::vector<double> times = sample_times(character.animations[0], kMostFrames);
+  for (const double t : times)
+    sum +=
+        toes_forward(character, humanoid,
+                     Landmarks(character, humanoid, sample(character.skeleton, character.animations[0], t)));
+  return sum / static_cast<double>(times.size());
 }
 
 // --- frames
-// --------------------------------------------------------------------------------------------------
 
 /// The part of `hint` that is perpendicular to the unit vector `y`, as a unit vector; any where there is
 /// none.
@@ -157,39 +253,6 @@ struct FrameBuilder {
 
   Vec3 anterior() const { return w.col(0); }
   Vec3 place(int node) const { return figure.world[node].translation(); }
-
-  /// Rule 2: how far the toes lie in front of the ankles; 0 where there are none.
-  double toes_forward() const {
-    double sum = 0.0;
-    for (int side = 0; side < 2; ++side) {
-      const auto toe = toe_place(side);
-      if (toe) sum += (*toe - figure[kFoot[side]]).dot(anterior());
-    }
-    return sum;
-  }
-
-  /// The same from the skin around the foot bones: how much farther it reaches forwards than backwards.
-  double skin_forward() const {
-    double sum = 0.0;
-    for (int side = 0; side < 2; ++side) {
-      const int foot = humanoid.segments[index(kFoot[side])].node();
-      if (foot < 0) continue;
-      const SkinExtent extent = skin_extent(character, figure.world, anterior(), [&](int node) {
-        return is_at_or_below(character.skeleton, foot, node);
-      });
-      const double ankle = figure[kFoot[side]].dot(anterior());
-      if (extent.found) sum += extent.max + extent.min - 2.0 * ankle;
-    }
-    return sum;
-  }
-
-  std::optional<Vec3> toe_place(int side) const {
-    if (humanoid.toes[side] >= 0) return place(humanoid.toes[side]);
-    const int node = humanoid.segments[index(kFoot[side])].node();
-    if (node >= 0 && character.bvh && character.bvh->end_site[node])
-      return figure.world[node] * *character.bvh->end_site[node];
-    return std::nullopt;
-  }
 
   /// Rules 3 to 8.
   void build(double clavicle_elevation) {
@@ -236,7 +299,7 @@ struct FrameBuilder {
     const Quat upright =
         spread && angle(shank, -up) > radians(8) ? shortest_rotation(shank, -up) : Quat::Identity();
     Vec3 forward = anterior();
-    if (const auto toe = toe_place(side)) {
+    if (const auto toe = toe_place(character, humanoid, figure, side)) {
       const Vec3 to_toe = upright * Vec3(*toe - figure[kFoot[side]]);
       const Vec3 horizontal = to_toe - to_toe.dot(up) * up;
       if (horizontal.norm() > 0.3 * to_toe.norm() && horizontal.norm() > 0.0) forward = horizontal;
@@ -259,23 +322,65 @@ RestPoseClass class_of_rest(const Character& character, const Humanoid& humanoid
 
 }  // namespace
 
+/// How many bones of the limbs carry a name of their side, less those with one of the other side.
+int named_sides(const Character& character, const Humanoid& humanoid) {
+  int agreeing = 0;
+  for (int s = index(Segment::clavicle_l); s < kSegmentCount; ++s) {
+    const int node = humanoid.segments[s].node();
+    if (node < 0) continue;
+    const Side side = read_name(character.skeleton.nodes[node].name).side;
+    const Side expected = segment_at(s) < mirror_of(segment_at(s)) ? Side::left : Side::right;
+    if (side != Side::none) agreeing += side == expected ? 1 : -1;
+  }
+  return agreeing;
+}
+
+/// Rule 2. Sides come from the user, VRM data or names; where none of them speaks, from the feet.
+void choose_sides(const Character& character, const Reference& reference, Humanoid& humanoid,
+                  Diagnostics& diagnostics) {
+  const std::string by = humanoid.segments[index(Segment::thigh_l)].by;
+  const auto exchange = [&](std::string_view why) {
+    swap_sides(humanoid);
+    diagnostics.warn(character.path.string(), fmt::format("{}: --map with the limbs sets them", why));
+  };
+  const int agreeing = by == "topology" ? named_sides(character, humanoid) : 0;
+  if (agreeing < 0) swap_sides(humanoid);
+  const bool stated = by != "topology" || agreeing != 0;
+  const Affine pelvis =
+      world_transforms(character.skeleton, reference.pose)[humanoid.carrier_node(Segment::pelvis)];
+  if (stated && by != "user" && pelvis.linear().determinant() < 0.0)
+    exchange("left and right are exchanged against the names: the armature is mirrored");
+  const double forward = feet_forward(character, humanoid, reference);
+  if (std::abs(forward) < kClearlyForward) {
+    if (!stated && forward <= 0.0)
+      diagnostics.warn(character.path.string(),
+                       "neither names nor feet say which side is left; the figure is taken to face +z: --map "
+                       "with the limbs sets them");
+    return;
+  }
+  if (forward > 0.0) return;
+  if (!stated)
+    swap_sides(humanoid);
+  else
+    diagnostics.warn(character.path.string(),
+                     fmt::format("the feet point backwards by the sides that {} say; {} win: --map with left "
+                                 "and right limbs exchanged says otherwise",
+                                 by == "user"  ? "you"
+                                 : by == "vrm" ? "VRM data"
+                                               : "the names",
+                                 by == "user" ? "you" : "they"));
+}
+
 Status find_frames(const Character& character, const HumanoidOptions& options, Humanoid& humanoid,
                    Diagnostics& diagnostics) {
-  Reference reference = find_reference(character, humanoid);
+  Reference reference = find_reference(character, humanoid, options, diagnostics);
   if (!humanlike(Landmarks(character, humanoid, reference.pose)))
     return input_error(
         character.path,
         "not a humanoid: bones were found by name, but no pose of the file has a trunk that rises from "
         "two legs with an arm on each side",
         "if the character is a human, check the bones with --map SEGMENT=NODE");
-  const FrameBuilder first(character, humanoid, reference);
-  const double forward = first.toes_forward();
-  if (forward < 0.0 || (forward == 0.0 && first.skin_forward() < 0.0)) {
-    swap_sides(humanoid);
-    diagnostics.warn(character.path.string(),
-                     "left and right are exchanged: the feet point the other way than the names say");
-  }
-  reference.up = choose_up(character, options, reference.up, diagnostics);
+  choose_sides(character, reference, humanoid, diagnostics);
   humanoid.rest_pose = class_of_rest(character, humanoid);
   FrameBuilder builder(character, humanoid, reference);
   builder.build(clavicle_elevation(class_of(builder.figure, reference.up)));
@@ -283,8 +388,14 @@ Status find_frames(const Character& character, const HumanoidOptions& options, H
     const Quat node = rotation_part(builder.figure.world[humanoid.carrier_node(segment_at(s))].linear());
     humanoid.node_from_segment[s] = (node.conjugate() * Quat(builder.frame[s])).normalized();
   }
-  const double height = height_in_file(character, humanoid, reference);
+  const double height = height_in_file(character, humanoid, reference, diagnostics);
   const Unit unit = choose_unit(character, options, height);
+  if (height * unit.metres < kLeastHeight || height * unit.metres > kMostHeight)
+    return usage_error(
+        character.path,
+        fmt::format("a unit of {:g} m makes the character {:.3g} m tall", unit.metres, height * unit.metres),
+        fmt::format("give a --unit or --height that makes it {:g} to {:g} m tall", kLeastHeight,
+                    kMostHeight));
   if (!unit.warning.empty()) diagnostics.warn(character.path.string(), unit.warning);
   humanoid.height_m = height * unit.metres;
   humanoid.world_from_file = {unit.metres, shortest_rotation(reference.up, Vec3::UnitY()), Vec3::Zero()};

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "base/math.h"
 #include "base/result.h"
 #include "base/segments.h"
+#include "bones/options.h"
 
 namespace ukemi {
 
@@ -20,8 +20,8 @@ struct SegmentNodes {
   /// Nodes that share the joint above the segment, proximal first; the last one carries the segment's
   /// rotation in full, node k of n turns by (k + 1) / n of it. Empty: the segment is fused.
   std::vector<int> chain;
-  /// True when the parent segment's node is no ancestor of chain.front() (IK-style feet): the clip then
-  /// moves its translation as well.
+  /// True when the segment above does not carry chain.front() (IK-style feet, clavicles on a neck): the clip
+  /// then moves its translation as well, with the segment above.
   bool detached = false;
   std::string by;  // "vrm", "name", "topology", "user"; "" when fused
 
@@ -41,16 +41,6 @@ Segment limb_end(Segment limb);
 
 enum class RestPoseClass { t_pose, a_pose, neutral, other };
 std::string_view name(RestPoseClass pose);  // "T", "A", "neutral", "other"
-
-struct HumanoidOptions {
-  std::map<std::string, std::string> map;  // segment name -> node label, from the user
-  std::optional<double> metres_per_unit;
-  std::optional<char> up_axis;  // 'y' or 'z'
-  std::optional<double> height_m;
-  /// Of a file with only motion: the neutral pose is corrected by how the person moves (refine.h), because
-  /// capture suits and marker sets put trunk and hands askew. False: it is that of the rest pose.
-  bool neutral_from_motion = true;
-};
 
 /// A motion without a character: its clip is the only source of the person's posture.
 bool only_motion(const Character& character);
@@ -81,6 +71,8 @@ struct Humanoid {
 
   /// The segment that moves `s`: itself, or where it is fused the nearest one above that is not.
   Segment carrier(Segment s) const;
+  /// The node that a segment's first node moves with: of the segment above, or the root.
+  int holder_of(Segment s) const;
   int carrier_node(Segment s) const { return segments[index(carrier(s))].node(); }
 };
 
@@ -118,10 +110,11 @@ enum class StartPose { rest, stand, guard };
 
 /// How "stand" is stood in.
 struct StanceOptions {
-  /// As people do: the weight 3 cm ahead of the ankles, a foot a little ahead, more weight on one leg, unequal arms.
-  /// Otherwise even, the weight over the ankles.
+  /// As people do: the weight 3 cm ahead of the ankles, a foot a little ahead, more weight on one leg,
+  /// unequal arms. Otherwise even, the weight over the ankles.
   bool living = false;
-  /// A living stance that leans into a blow from there (front, right; unit), feet apart and knees bent. Zero: at ease.
+  /// A living stance that leans into a blow from there (front, right; unit), feet apart and knees bent. Zero:
+  /// at ease.
   Vec2 braced_against = Vec2::Zero();
   std::uint64_t seed = 0;  // varies a living stance; 0: the mean one
 };

@@ -1,7 +1,7 @@
 #include "humanoid/humanoid.h"
 
+#include "bones/bones.h"
 #include "humanoid/assemble.h"
-#include "humanoid/bones.h"
 #include "humanoid/frames.h"
 #include "humanoid/twist.h"
 
@@ -22,9 +22,10 @@ Result<Humanoid> humanoid_of(const Character& character, const Bones& bones, con
 
 Result<Humanoid> map_humanoid(const Character& character, const HumanoidOptions& options,
                               Diagnostics& diagnostics) {
-  const Result<Bones> bones = find_bones(character, options);
-  if (!bones) return bones.error();
-  auto humanoid = humanoid_of(character, *bones, options, diagnostics);
+  const Result<Bones> bones = find_bones(character, options, diagnostics);
+  if (!bones && bones.error().kind != ErrorKind::input) return bones.error();
+  auto humanoid =
+      bones ? humanoid_of(character, *bones, options, diagnostics) : Result<Humanoid>(bones.error());
   if (humanoid) return humanoid;
   // Names that make no human, on what may have the shape of one.
   const auto shape = find_bones_by_shape(character, options);

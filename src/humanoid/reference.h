@@ -15,8 +15,10 @@ struct Reference {
 };
 
 /// A motion's zero pose or best frame; a character's rest pose, its bind pose where that is cleaner, else the
-/// best frame of its first animation. Turned upright where it leans against every axis of the file.
-Reference find_reference(const Character& character, const Humanoid& humanoid);
+/// best frame of its first animation. Turned upright where it does not stand along the up axis, which is that
+/// of the user, else of the file (glTF: y), else of the zero pose or of the way the figure stands.
+Reference find_reference(const Character& character, const Humanoid& humanoid, const HumanoidOptions& options,
+                         Diagnostics& diagnostics);
 
 /// Times of an animation's frames, at most about `at_most` of them.
 std::vector<double> sample_times(const Animation& animation, int at_most);

@@ -102,35 +102,36 @@ std::vector<Vec3> surface_points(const Character& character, const std::vector<A
   return points;
 }
 
-std::vector<Segment> segments_of_nodes(const Skeleton& skeleton, const Humanoid& humanoid) {
-  std::vector<Segment> segments(skeleton.nodes.size(), Segment::pelvis);
+std::vector<std::optional<Segment>> segments_of_nodes(const Skeleton& skeleton, const Humanoid& humanoid) {
+  std::vector<std::optional<Segment>> segments(skeleton.nodes.size());
+  for (int node = humanoid.root; node >= 0; node = skeleton.nodes[node].parent)
+    segments[node] = Segment::pelvis;
   std::vector<char> own(segments.size(), 0);
   for (int s = 0; s < kSegmentCount; ++s)
     for (const int node : humanoid.segments[s].chain) {
       segments[node] = segment_at(s);
       own[node] = 1;
     }
+  std::vector<char> in_body(own);
+  if (humanoid.root >= 0) in_body[humanoid.root] = 1;
   for (const int node : skeleton.order) {
     const int parent = skeleton.nodes[node].parent;
-    if (!own[node] && parent >= 0) segments[node] = segments[parent];
+    if (parent < 0 || own[node] || !in_body[parent]) continue;
+    segments[node] = segments[parent];
+    in_body[node] = 1;
   }
   return segments;
 }
 
-std::vector<char> carries_skin(const Character& character) {
-  std::vector<char> carries(character.skeleton.nodes.size(), 0);
-  for (const MeshPart& part : character.parts) {
-    if (part.skin < 0 || part.joints.empty()) {
-      if (part.node >= 0) carries[part.node] = 1;
-      continue;
-    }
-    for (std::size_t v = 0; v < part.weights.size(); ++v) {
-      const auto& weights = part.weights[v];
-      const auto strongest = std::max_element(weights.begin(), weights.end()) - weights.begin();
-      carries[character.skins[part.skin].joints[part.joints[v][strongest]]] = 1;
-    }
-  }
-  return carries;
+bool is_scenery(const Skeleton& skeleton, const Humanoid& humanoid, const MeshPart& part) {
+  if (part.skin >= 0 && !part.joints.empty()) return false;
+  std::vector<char> in_body(skeleton.nodes.size(), 0);
+  for (const SegmentNodes& segment : humanoid.segments)
+    for (const int node : segment.chain) in_body[node] = 1;
+  if (humanoid.root >= 0) in_body[humanoid.root] = 1;
+  for (int node = part.node; node >= 0; node = skeleton.nodes[node].parent)
+    if (in_body[node]) return false;
+  return true;
 }
 
 }  // namespace ukemi

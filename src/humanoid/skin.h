@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/character.h"
@@ -26,10 +27,10 @@ std::vector<Vec3> surface_points(const Character& character, const std::vector<A
                                  double spacing, const std::function<bool(int node)>& counts);
 
 /// The segment that moves each node and its skin: the node's own, or that of the node above it; the pelvis
-/// where there is none.
-std::vector<Segment> segments_of_nodes(const Skeleton& skeleton, const Humanoid& humanoid);
+/// for what hangs on the root and for the nodes above it; nothing for what belongs to no part of the body.
+std::vector<std::optional<Segment>> segments_of_nodes(const Skeleton& skeleton, const Humanoid& humanoid);
 
-/// Which nodes carry vertices: most of a skinned one's weight, or a mesh of their own.
-std::vector<char> carries_skin(const Character& character);
+/// Scenery: a mesh without a skin, on no bone of the body.
+bool is_scenery(const Skeleton& skeleton, const Humanoid& humanoid, const MeshPart& part);
 
 }  // namespace ukemi

@@ -263,11 +263,12 @@ class SkinSurface {
               const BodyPose& body, bool (*counts)(Segment))
       : band_m_(kBand * humanoid.height_m) {
     const Pose pose = pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, body);
-    const std::vector<Segment> segments = segments_of_nodes(character.skeleton, humanoid);
+    const auto segments = segments_of_nodes(character.skeleton, humanoid);
     const Similarity& world = humanoid.world_from_file;
     const double spacing = kSpacing * humanoid.height_m / world.scale;
-    for (const Vec3& point : surface_points(character, world_transforms(character.skeleton, pose), spacing,
-                                            [&](int node) { return counts(segments[node]); }))
+    for (const Vec3& point :
+         surface_points(character, world_transforms(character.skeleton, pose), spacing,
+                        [&](int node) { return segments[node] && counts(*segments[node]); }))
       points_.push_back(world * point);
   }
 

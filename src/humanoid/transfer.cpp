@@ -54,11 +54,15 @@ Transfer::Transfer(const Character& to, const Humanoid& to_humanoid, const Chara
 std::vector<Transfer::Namesake> Transfer::find_namesakes() const {
   const double leg = leg_length(to_, to_humanoid_);
   const RestPlaces mine(to_.skeleton, to_humanoid_), theirs(from_.skeleton, from_humanoid_);
+  const std::map<std::string, int> my_names = nodes_by_plain_name(to_.skeleton);
+  const std::map<std::string, int> their_names = nodes_by_plain_name(from_.skeleton);
   std::vector<Namesake> namesakes;
   std::vector<char> has_namesake(to_.skeleton.nodes.size(), 0);
   for (int i = 0; i < to_.skeleton.size(); ++i) {
     const std::string& name = to_.skeleton.nodes[i].name;
-    const int other = name.empty() || to_.skeleton.find(name) != i ? -1 : from_.skeleton.find(name);
+    const auto mine_named = my_names.find(plain_name(name)), their_named = their_names.find(plain_name(name));
+    const bool is_unique = mine_named != my_names.end() && mine_named->second == i;
+    const int other = is_unique && their_named != their_names.end() ? their_named->second : -1;
     if (other < 0 || angle_between(mine.world_rotation[i], theirs.world_rotation[other]) > kSameRotation)
       continue;
     const double distance = (mine.in_parent[i] - size_ratio_ * theirs.in_parent[other]).norm();

@@ -13,7 +13,8 @@ bool is_named_twist(std::string name) {
   for (char& c : name)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   const bool control = name.find("control") != std::string::npos || name.find("ctrl") != std::string::npos;
-  return !control && (name.find("twist") != std::string::npos || name.find("roll") != std::string::npos);
+  return !control && (name.find("twist") != std::string::npos || name.find("roll") != std::string::npos ||
+                      name.find("捩") != std::string::npos);  // MikuMikuDance
 }
 
 bool is_limb(Segment s) {

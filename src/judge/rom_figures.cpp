@@ -75,7 +75,12 @@ RomPaths rom_paths(const Skeleton& skeleton, const Humanoid& humanoid, const Ran
                                                                                            : canonical;
 }
 
-RomPaths rom_paths(const ClipToCheck& clip, const Humanoid& humanoid, const RangeOfMotion& range) {
+RangeOfMotion range_of_clip(const RangeOfMotion& range, const Character& character, std::size_t animation) {
+  return range.name == "human" ? range_in_extras(range, character.animations[animation].extras_json) : range;
+}
+
+RomPaths rom_paths(const ClipToCheck& clip, const Humanoid& humanoid, const RangeOfMotion& asked) {
+  const RangeOfMotion range = range_of_clip(asked, *clip.character, clip.animation);
   const Character& character = *clip.character;
   const std::vector<Pose> poses = clip_to_check(character, clip.animation).frames;
   const auto stored = frames_in_extras(character.skeleton, character.animations[clip.animation].extras_json);

@@ -66,9 +66,13 @@ struct ClipToCheck {
   HumanoidOptions options;
 };
 
-/// The joints' paths through a clip: with the frames that its bake stored in it, else the reading that leaves
-/// fewer samples outside. A file with only motion has two neutral poses to be read from: its rest pose, and
-/// how the person holds himself in the mean.
+/// The range that a clip is judged by: that of its bake where it is asked for the human one, else what is
+/// asked for.
+RangeOfMotion range_of_clip(const RangeOfMotion& range, const Character& character, std::size_t animation);
+
+/// The joints' paths through a clip, in the range of the clip: with the frames that its bake stored in it,
+/// else the reading that leaves fewer samples outside. A file with only motion has two neutral poses to be
+/// read from: its rest pose, and how the person holds himself in the mean.
 RomPaths rom_paths(const ClipToCheck& clip, const Humanoid& humanoid, const RangeOfMotion& range);
 
 /// A clip's poses as they are checked, at most 60 a second.

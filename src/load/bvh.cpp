@@ -97,6 +97,17 @@ std::optional<BvhChannel> channel_named(std::string_view word) {
   return std::nullopt;
 }
 
+/// The unit in the name of an End Site as this program writes it ("unit=0.01m,up=y").
+std::optional<double> unit_in_mark(std::string_view mark) {
+  constexpr std::string_view kBefore = "unit=", kAfter = "m,up=y";
+  if (!mark.starts_with(kBefore) || !mark.ends_with(kAfter)) return std::nullopt;
+  mark.remove_prefix(kBefore.size());
+  if (mark.size() <= kAfter.size()) return std::nullopt;
+  mark.remove_suffix(kAfter.size());
+  const auto unit = load::whole_number(mark);
+  return unit && *unit > 0.0 ? unit : std::nullopt;
+}
+
 /// Reads one file; every function leaves the scanner behind what it read.
 class BvhReader {
  public:
@@ -112,6 +123,7 @@ class BvhReader {
   Skeleton skeleton;
   BvhSource source;
   double fps = 0.0;
+  std::optional<double> metres_per_unit;  // from the name of an End Site, see unit_in_mark
 
  private:
   /// A joint whose closing brace has not come yet.
@@ -243,6 +255,7 @@ class BvhReader {
     const int joint = open_.back().joint;
     const std::string_view kind = scanner_.name();
     if (!same_word(kind.substr(0, 4), "Site")) return expected("Site after End", kind);
+    if (const auto unit = unit_in_mark(trimmed(kind.substr(4)))) metres_per_unit = unit;
     if (Status s = expect_word("{"); !s) return s;
     if (Status s = expect_word("OFFSET"); !s) return s;
     const Result<Vec3> offset = read_vector();
@@ -297,6 +310,12 @@ class BvhReader {
       return error(frames_line_ + 1,
                    fmt::format("lasts {:g} s, longer than a day", *seconds * static_cast<double>(announced_)),
                    "cut the motion into shorter files");
+    if (*seconds > 1.0 && announced_ > 1)
+      diagnostics_.warn(
+          path_.string(),
+          fmt::format("has less than one frame a second (Frame Time {}); the format wants seconds, "
+                      "as in 0.0333333",
+                      quoted(*time)));
     source.frame_time_s = *seconds;
     fps = rate_of(*time, *seconds);
     return Done{};
@@ -392,12 +411,37 @@ Quat rotation_of(const std::vector<BvhChannel>& channels, const double* values) 
   return rotation;
 }
 
-/// Positions replace the joint's offset, axis by axis (as Blender reads them).
-Vec3 translation_of(const std::vector<BvhChannel>& channels, const double* values, const Vec3& offset) {
+/// Positions replace the joint's offset, axis by axis (as Blender reads them), or are added to it (as
+/// three.js does).
+Vec3 translation_of(const std::vector<BvhChannel>& channels, const double* values, const Vec3& offset,
+                    bool add) {
   Vec3 translation = offset;
   for (std::size_t i = 0; i < channels.size(); ++i)
-    if (!is_rotation(channels[i])) translation[axis_of(channels[i])] = values[i];
+    if (!is_rotation(channels[i]))
+      translation[axis_of(channels[i])] = values[i] + (add ? offset[axis_of(channels[i])] : 0.0);
   return translation;
+}
+
+/// Whether the positions below the root lie around zero rather than around the offsets of their joints: they
+/// are meant to be added.
+bool positions_lie_around_zero(const BvhSource& source, const Skeleton& skeleton) {
+  constexpr std::size_t kMostRows = 200;
+  constexpr double kNearZero = 0.25;
+  const std::size_t stride = source.frames.size() / kMostRows + 1;
+  double to_zero = 0.0, to_offset = 0.0;
+  std::size_t first = 0;
+  for (int joint = 0; joint < skeleton.size(); ++joint) {
+    const std::vector<BvhChannel>& channels = source.channels[joint];
+    for (std::size_t row = 0; row < source.frames.size() && skeleton.nodes[joint].parent >= 0; row += stride)
+      for (std::size_t i = 0; i < channels.size(); ++i) {
+        if (is_rotation(channels[i])) continue;
+        const double value = source.frames[row][first + i];
+        to_zero += std::abs(value);
+        to_offset += std::abs(value - skeleton.nodes[joint].rest.translation[axis_of(channels[i])]);
+      }
+    first += channels.size();
+  }
+  return to_zero < kNearZero * to_offset;
 }
 
 Animation animation_of(const BvhSource& source, const Skeleton& skeleton, double fps, std::string name) {
@@ -413,7 +457,9 @@ Animation animation_of(const BvhSource& source, const Skeleton& skeleton, double
       Track track{joint, TrackPath::translation, Interpolation::linear, times, {}};
       track.values.reserve(3 * frame_count);
       for (const auto& row : source.frames) {
-        const Vec3 t = translation_of(channels, row.data() + first, skeleton.nodes[joint].rest.translation);
+        const bool add = source.positions_add && skeleton.nodes[joint].parent >= 0;
+        const Vec3 t =
+            translation_of(channels, row.data() + first, skeleton.nodes[joint].rest.translation, add);
         track.values.insert(track.values.end(), t.begin(), t.end());
       }
       animation.tracks.push_back(std::move(track));
@@ -472,6 +518,9 @@ Result<Character> read_bvh(std::string_view text, const std::filesystem::path& p
   character.skeleton = std::move(reader.skeleton);
   [[maybe_unused]] const bool sorted = character.skeleton.sort();
   assert(sorted && "joints are read parents first");
+  reader.source.positions_add = positions_lie_around_zero(reader.source, character.skeleton);
+  character.metres_per_unit = reader.metres_per_unit;
+  if (reader.metres_per_unit) character.yup_from_file = Quat::Identity();
   character.animations.push_back(animation_of(reader.source, character.skeleton, reader.fps, character.name));
   character.document.json = document_of(character.skeleton);
   character.document.folder = path.parent_path();

@@ -367,7 +367,10 @@ Result<Character> read_container(GltfContainer container, const std::filesystem:
 
 Result<Character> read_gltf(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
                             Diagnostics& diagnostics) {
-  return with_errors(path, [&] { return GltfReader(path, diagnostics).read(load::split_container(bytes)); });
+  auto character =
+      with_errors(path, [&] { return GltfReader(path, diagnostics).read(load::split_container(bytes)); });
+  if (character) load::restore_additive(*character);
+  return character;
 }
 
 }  // namespace ukemi

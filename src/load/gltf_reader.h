@@ -19,4 +19,8 @@ Decomposition decompose(const Eigen::Matrix4d& matrix);
 Result<Character> read_container(GltfContainer container, const std::filesystem::path& path,
                                  Diagnostics& diagnostics);
 
+/// Turns animations whose extras call them additive into the motion they make when added to the pose they
+/// were taken from: the nodes of "from" ({NODE: {"translation", "rotation", "scale"}}), the others at rest.
+void restore_additive(Character& character);
+
 }  // namespace ukemi::load

@@ -13,6 +13,7 @@ namespace {
 constexpr double kAfterBlow_s = 1.0;   // after the blow
 constexpr double kContact_s = 0.3;     // within which a blow is over
 constexpr double kJitterSpan_s = 0.5;  // before the end
+constexpr double kSettled_s = 0.1;     // after the start: what touches the floor by then stood on it
 
 }  // namespace
 
@@ -88,8 +89,6 @@ void Recorder::step(double time_s, double h, const Contacts& contacts, double ex
   figures_.floor_penetration_max_m = std::max(figures_.floor_penetration_max_m, contacts.floor_penetration);
   figures_.floor_penetration_end_m = contacts.floor_penetration;
   figures_.self_penetration_max_m = std::max(figures_.self_penetration_max_m, contacts.self_penetration);
-  if (contacts.ground_beyond_feet && !figures_.first_ground_contact_s)
-    figures_.first_ground_contact_s = time_s;
   if (!contacts.ground) airborne_ += h;
   if (time_s <= kAfterBlow_s + 1e-9) {
     momentum_integral_ += h * angular_momentum_about_centre(model_.bodies()).norm();
@@ -103,8 +102,10 @@ void Recorder::touches(const Senses& senses) {
   for (const SegmentContact& contact : senses.contacts) {
     if (contact.with != SegmentContact::With::floor) continue;
     const int s = index(contact.segment);
-    if (!before_) stood_[s] = true;
+    if (!before_ || senses.time_s <= kSettled_s) stood_[s] = true;
     if (stood_[s] || figures_.touch_down[s]) continue;
+    const bool foot = contact.segment == Segment::foot_l || contact.segment == Segment::foot_r;
+    if (!foot && !figures_.first_ground_contact_s) figures_.first_ground_contact_s = senses.time_s;
     const Vec3 velocity =
         before_->velocity[s] + before_->angular_velocity[s].cross(contact.place - before_->centre[s]);
     figures_.touch_down[s] = TouchDown{senses.time_s, std::max(0.0, -velocity.y())};

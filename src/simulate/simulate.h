@@ -69,7 +69,7 @@ struct SimulationFigures {
   double delivered_n_s = 0.0;     // of it, what the body received
   double muscle_share_max = 0.0;  // of a joint's strength that a behaviour's muscles gave
   double muscle_work_j = 0.0;     // of those muscles, either way
-  std::optional<double> first_ground_contact_s;     // of anything but the feet
+  std::optional<double> first_ground_contact_s;     // of anything that did not stand on it, feet apart
   PerSegment<std::optional<TouchDown>> touch_down;  // of what did not stand on the floor at the start
   double angular_momentum_mean_kg_m2_s = 0.0;       // about the centre of mass, mean over 1 s after the blow
   double airborne_mean_s = 0.0;                     // time without ground contact after the blow

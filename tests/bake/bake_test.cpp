@@ -27,10 +27,10 @@ Baked bake_of(const std::filesystem::path& file, const BakeSettings& settings) {
   auto outcome = bake(*character, settings, diagnostics);
   EXPECT_TRUE(outcome) << outcome.error().message();
   Baked baked{std::move(*character), std::move(*outcome), {}};
-  const ReducedClip reduced = reduce_keys(baked.character.skeleton, baked.outcome.timeline.clip,
-                                          baked.outcome.prepared.humanoid.world_from_file, settings.keys);
-  baked.report =
-      Json::parse(report_json(file.string(), baked.character, settings, baked.outcome, reduced, diagnostics));
+  BakedFile in_memory{baked.outcome, {}, {}, {}, {}, {}};
+  in_memory.reduced = reduce_keys(baked.character.skeleton, baked.outcome.timeline.clip,
+                                  baked.outcome.prepared.humanoid.world_from_file, settings.keys);
+  baked.report = Json::parse(report_json(file.string(), baked.character, settings, in_memory, diagnostics));
   return baked;
 }
 

@@ -17,7 +17,7 @@ std::string another_value(const Setting& setting) {
   static const std::map<std::string_view, std::string> texts = {
       {"hit", "head"},       {"from", "30,10"},         {"preset", "kick"},    {"scene", "fall"},
       {"region", "diamond"}, {"active-file", "a.toml"}, {"rate", "fixed:480"}, {"map", "head=Head"},
-      {"unit", "0.0254"},    {"pose", "guard"},         {"clip", "walk"}};
+      {"unit", "0.0254"},    {"root", "Hips"},          {"pose", "guard"},     {"clip", "walk"}};
   const BakeSettings defaults;
   const auto values = setting.get(defaults);
   const std::string current = values.empty() ? "" : values.front();

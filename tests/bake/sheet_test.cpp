@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "load/character_path.h"
+#include "base/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

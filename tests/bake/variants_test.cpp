@@ -381,14 +381,14 @@ TEST(Variant, OfExtraLimbs) {
 TEST(Variant, OfWideBodiesHoldTheirArmsBesideTheTrunk) {
   const auto hands_apart = [](double width) {
     Variant v;
-    const std::vector<Segment> segments = segments_of_nodes(v.character.skeleton, [&] {
+    const auto segments = segments_of_nodes(v.character.skeleton, [&] {
       Diagnostics diagnostics;
       return *map_humanoid(v.character, {}, diagnostics);
     }());
     for (MeshPart& part : v.character.parts)
       for (std::size_t i = 0; i < part.positions.size(); ++i) {
         const int joint = v.character.skins[part.skin].joints[part.joints[i][0]];
-        const Segment s = segments[joint];
+        const auto s = segments[joint];
         if (s == Segment::abdomen || s == Segment::pelvis || s == Segment::chest)
           part.positions[i].x() *= static_cast<float>(width);
       }
@@ -423,13 +423,22 @@ TEST(Variant, WithoutNames) {
   expect_human("numbers for names", numbered);
 }
 
-TEST(Variant, OfMisleadingNames) {
+TEST(Variant, LeftCalledRightKeepsItsNamesWithAWarning) {
   Variant swapped;
   swapped.rename([](const std::string& name) {
     if (name.starts_with("Left")) return "Right" + name.substr(4);
     return name.starts_with("Right") ? "Left" + name.substr(5) : name;
   });
-  expect_human("left called right", swapped);
+  const Character character = swapped.finish();
+  Diagnostics diagnostics;
+  const auto humanoid = map_humanoid(character, {}, diagnostics);
+  ASSERT_TRUE(humanoid);
+  EXPECT_EQ(character.skeleton.nodes[humanoid->carrier_node(Segment::hand_l)].name, "LeftHand");
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("feet point backwards"), std::string::npos);
+}
+
+TEST(Variant, OfMisleadingNames) {
   Variant limbs;
   limbs.rename([](const std::string& name) {
     static const std::map<std::string, std::string> other = {{"Arm", "UpLeg"},   {"ForeArm", "Leg"},

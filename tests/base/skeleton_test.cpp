@@ -85,5 +85,17 @@ TEST(Animation, ADayIsSampledAsOftenAsMemoryAllows) {
   EXPECT_NEAR(clip.frames.back()[0].translation.x(), 1.0, 1e-9);
 }
 
+TEST(Skeleton, NodesGoByNamesThatABvhCanHold) {
+  EXPECT_EQ(plain_name("Left Arm{1}\t"), "Left_Arm_1__");
+  Skeleton skeleton;
+  for (const char* name : {"Chest", "Left Arm", "Left_Arm", "", "Chest"})
+    skeleton.nodes.push_back({name, -1, {}});
+  const auto all = nodes_by_plain_name(skeleton);
+  EXPECT_EQ(all.at("Chest"), -1) << "two have it";
+  EXPECT_EQ(all.at("Left_Arm"), -1);
+  EXPECT_EQ(all.size(), 2u);
+  EXPECT_EQ(nodes_by_plain_name(skeleton, {1, 1, 0, 1, 0}).at("Chest"), 0);
+}
+
 }  // namespace
 }  // namespace ukemi

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/bake.h"
+#include "base/character_path.h"
 #include "base/digest.h"
 #include "batch/recipe.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

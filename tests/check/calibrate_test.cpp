@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "bake/bake.h"
+#include "base/character_path.h"
 #include "base/files.h"
 #include "clip/names.h"
-#include "load/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

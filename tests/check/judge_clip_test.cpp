@@ -12,8 +12,8 @@
 
 #include "bake/bake.h"
 #include "bake/direction.h"
+#include "base/character_path.h"
 #include "judge/judge.h"
-#include "load/character_path.h"
 #include "load/load.h"
 #include "support/extra_data.h"
 

@@ -52,7 +52,8 @@ TEST_F(Rom, SaysNoToAClipThatLeavesTheRangeTooFar) {
   EXPECT_EQ(ran.status, 1);
   EXPECT_NE(ran.out.find("outside, more than --max-excess 1"), std::string::npos) << ran.out;
   EXPECT_EQ(picture("walk.png"), "PNG");
-  EXPECT_EQ(run({"rom", "--check", "walk", "--region", "diamond"}).status, 0) << "nothing was asked";
+  EXPECT_EQ(run({"rom", "--check", "walk", "--region", "diamond"}).status, 1) << "1 degree unless said";
+  EXPECT_EQ(run({"rom", "--check", "walk", "--region", "diamond", "--max-excess", "180"}).status, 0);
   expect_refused({"rom", "--max-excess", "1"}, 2, "--max-excess needs --check");
 }
 

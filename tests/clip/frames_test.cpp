@@ -43,6 +43,27 @@ TEST(Frames, ComeBackFromTheExtras) {
   EXPECT_LT(angle_between(rotations[index(Segment::hand_l)], rotations[index(Segment::forearm_l)]), 1e-12);
 }
 
+TEST(Frames, RangesThatAreNotTheHumanOnesComeBackFromTheExtras) {
+  const Puppet puppet;
+  const auto human = load_range_of_motion("human");
+  ASSERT_TRUE(human);
+  JointRange wide = human->joints[index(Joint::elbow_l)];
+  EXPECT_GT(widen_to_hold(wide, {Vec2(0.3, -0.6), 0.0}, 0.05), 0.0);
+  ClipFacts facts;
+  facts.ranges = {{Joint::elbow_l, wide}};
+  const std::string extras = animation_extras(puppet.skeleton, {}, {}, facts);
+  const RangeOfMotion read = range_in_extras(*human, extras);
+  EXPECT_EQ(read.joints[index(Joint::elbow_l)].polygon, wide.polygon);
+  EXPECT_EQ(read.joints[index(Joint::elbow_r)].polygon, human->joints[index(Joint::elbow_r)].polygon);
+  EXPECT_EQ(excess(read.joints[index(Joint::elbow_l)], {Vec2(0.3, -0.6), 0.0}), 0.0);
+  for (const char* bad : {"", "[]", R"({"ukemi":{"ranges":7}})", R"({"ukemi":{"ranges":{"elbow_l":{}}}})",
+                          R"({"ukemi":{"ranges":{"elbow_l":{"polygon":[[1,1],[2,1],[2,2]],"twist":[0,0],)"
+                          R"("parent_from_joint":[0,0,0,1],"reference":[0,0,0,1]}}}})"})
+    EXPECT_EQ(range_in_extras(*human, bad).joints[index(Joint::elbow_l)].polygon,
+              human->joints[index(Joint::elbow_l)].polygon)
+        << bad;
+}
+
 TEST(Frames, OfOtherExtrasAreNone) {
   const Puppet puppet;
   const SegmentFrames frames =

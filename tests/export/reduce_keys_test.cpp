@@ -143,5 +143,31 @@ TEST(ReduceKeys, KeepsEveryKeyOfWhatMovesWhenSwitchedOff) {
   EXPECT_LT(test::largest_distance_m(puppet.character.skeleton, clip, reduced.tracks, {}), 1e-7);
 }
 
+TEST(ReduceKeys, RotationsAreExactWhereTheyHaveToBe) {
+  const test::Puppet puppet = test::make_puppet();
+  const Skeleton& skeleton = puppet.character.skeleton;
+  const Clip clip = test::falling_clip(skeleton);
+  const int hand = skeleton.find("LeftHand");
+  const auto off_deg = [&](const Pose& pose, std::size_t frame) {
+    return degrees(angle_between(pose[hand].rotation, clip.frames[frame][hand].rotation));
+  };
+  const auto largest_deg = [&](const ReducedClip& reduced) {
+    const Animation animation{"", 0.0, clip.duration_s(), clip.fps, reduced.tracks};
+    double largest = 0.0;
+    for (std::size_t f = 0; f < clip.frames.size(); ++f)
+      largest = std::max(largest, off_deg(sample(skeleton, animation, static_cast<double>(f) / clip.fps), f));
+    return largest;
+  };
+  const KeyReduction coarse{true, 0.02};
+  const ReducedClip free = reduce_keys(skeleton, clip, {}, coarse);
+  const ReducedClip kept = reduce_keys(skeleton, clip, {}, coarse, [&](std::size_t frame, const Pose& pose) {
+    return off_deg(pose, frame) > 0.1 ? std::vector<int>{hand} : std::vector<int>();
+  });
+  EXPECT_GT(largest_deg(free), 0.5);
+  EXPECT_LT(largest_deg(kept), 0.1 + 1e-6);
+  EXPECT_LE(kept.error_m, 0.02);
+  EXPECT_LT(kept.keys, reduce_keys(skeleton, clip, {}, {false, 0.0}).keys);
+}
+
 }  // namespace
 }  // namespace ukemi

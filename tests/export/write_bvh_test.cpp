@@ -13,6 +13,8 @@
 namespace ukemi {
 namespace {
 
+Diagnostics diagnostics;
+
 constexpr const char* kSource = R"(HIERARCHY
 ROOT Hips of mine
 {
@@ -55,7 +57,6 @@ Frame Time: 0.008333333333333333
 )";
 
 Character load(const std::string& text) {
-  Diagnostics diagnostics;
   auto character = read_bvh(text, "source.bvh", diagnostics);
   if (!character) throw std::runtime_error(character.error().message());
   return std::move(*character);
@@ -108,7 +109,7 @@ std::vector<Quat> rotations_of_every_kind(const AxisOrder& order, unsigned seed)
 
 TEST(WriteBvh, WritesASourceBackAsItWas) {
   const Character character = load(kSource);
-  const auto text = write_bvh(character, {}, own_clip(character), {});
+  const auto text = write_bvh(character, {}, own_clip(character), {}, diagnostics);
   ASSERT_TRUE(text);
   const std::string_view source = kSource;
   EXPECT_EQ(text->substr(0, text->find("Frame Time")), source.substr(0, source.find("Frame Time")))
@@ -127,7 +128,7 @@ TEST(WriteBvh, GivesTheSameRotationsToAMillionthOfADegree) {
   character.bvh->channels[3] = {};
   Clip clip = test::falling_clip(character.skeleton, 300);
   for (Pose& pose : clip.frames) pose[3].rotation = Quat::Identity();
-  const auto text = write_bvh(character, {}, clip, {});
+  const auto text = write_bvh(character, {}, clip, {}, diagnostics);
   ASSERT_TRUE(text);
   EXPECT_LT(largest_turn_deg(own_clip(load(*text)), clip), 1e-6);
 }
@@ -150,7 +151,7 @@ TEST(WriteBvh, GivesBackEveryRotationInEveryOrderOfChannels) {
       clip.frames.back()[1].rotation = first[i];
       clip.frames.back()[2].rotation = second[first.size() - 1 - i];
     }
-    const auto text = write_bvh(character, {}, clip, {});
+    const auto text = write_bvh(character, {}, clip, {}, diagnostics);
     ASSERT_TRUE(text);
     EXPECT_LT(largest_turn_deg(own_clip(load(*text)), clip), 1e-6);
   }
@@ -166,7 +167,7 @@ TEST(WriteBvh, GivesBackEveryRotationOfItsOwnHierarchy) {
     for (std::size_t i = 1; i < clip.frames[f].size(); ++i)
       clip.frames[f][i].rotation = clip.frames[f][i].rotation * rotations[(f + 7 * i) % rotations.size()];
   }
-  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {});
+  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {}, diagnostics);
   ASSERT_TRUE(text);
   const Character bvh = load(*text);
   const Clip read = own_clip(bvh);
@@ -192,7 +193,7 @@ TEST(WriteBvh, LetsAnglesRunOnInsteadOfJumping) {
     clip.frames.push_back(rest_pose(character.skeleton));
     clip.frames.back()[0].rotation = exp_rotation(Vec3(0.1, 1.0, 0.2).normalized() * (0.08 * f));
   }
-  const auto text = write_bvh(character, {}, clip, {});
+  const auto text = write_bvh(character, {}, clip, {}, diagnostics);
   ASSERT_TRUE(text);
   const Character again = load(*text);
   double largest = 0.0;
@@ -207,7 +208,7 @@ TEST(WriteBvh, BuildsItsOwnHierarchyForOtherSources) {
   test::Puppet puppet = test::make_puppet();
   const Skeleton& skeleton = puppet.character.skeleton;
   const Clip clip = test::falling_clip(skeleton);
-  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {});
+  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {}, diagnostics);
   ASSERT_TRUE(text);
   const Character bvh = load(*text);
   EXPECT_EQ(bvh.skeleton.size(), 20) << "the nodes of the chains";
@@ -226,7 +227,7 @@ TEST(WriteBvh, TakesTheLengthsOfBonesFromTheClip) {
     pose[skeleton.find("Hips")].scale = Vec3::Constant(1.1);
     pose[skeleton.find("Spine")].scale = Vec3::Constant(0.9);
   }
-  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {});
+  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {}, diagnostics);
   ASSERT_TRUE(text);
   EXPECT_LT(largest_distance_m(skeleton, clip, load(*text)), 1e-12);
 }
@@ -242,7 +243,7 @@ TEST(WriteBvh, HangsDetachedFeetOnTheSegmentAbove) {
   puppet.humanoid.reference = rest_pose(skeleton);
   puppet.humanoid.segments[index(Segment::foot_l)].detached = true;
   const auto text =
-      write_bvh(puppet.character, puppet.humanoid, {"still", 30, {rest_pose(skeleton)}, {}}, {});
+      write_bvh(puppet.character, puppet.humanoid, {"still", 30, {rest_pose(skeleton)}, {}}, {}, diagnostics);
   ASSERT_TRUE(text);
   const Character bvh = load(*text);
   const int written = bvh.skeleton.find("LeftFoot");
@@ -251,11 +252,100 @@ TEST(WriteBvh, HangsDetachedFeetOnTheSegmentAbove) {
   EXPECT_LT((bvh.skeleton.nodes[written].rest.translation - Vec3(0, -42, -2)).norm(), 1e-9);
 }
 
+TEST(WriteBvh, SaysItsUnitWhereReadersSkipIt) {
+  const test::Puppet puppet = test::make_puppet();
+  for (const double unit : {0.01, 1.0}) {
+    const auto text = write_bvh(puppet.character, puppet.humanoid,
+                                test::falling_clip(puppet.character.skeleton, 2), {unit}, diagnostics);
+    ASSERT_TRUE(text);
+    EXPECT_EQ(text->find("End Site unit="), text->find("End Site"));
+    EXPECT_EQ(load(*text).metres_per_unit.value(), unit);
+    // Once, and it stays when the file goes through the program again.
+    const Character again = load(*text);
+    const auto second = write_bvh(again, {}, own_clip(again), {}, diagnostics);
+    ASSERT_TRUE(second);
+    EXPECT_EQ(load(*second).metres_per_unit.value(), unit);
+    EXPECT_EQ(second->find("unit="), second->rfind("unit="));
+  }
+}
+
+TEST(WriteBvh, HoldsAFigureBelowAMirror) {
+  test::Puppet puppet = test::make_puppet();
+  Skeleton& skeleton = puppet.character.skeleton;
+  Clip clip = test::falling_clip(skeleton);
+  int armature = skeleton.find("Hips");
+  while (skeleton.nodes[armature].parent >= 0) armature = skeleton.nodes[armature].parent;
+  ASSERT_NE(armature, puppet.humanoid.root);
+  skeleton.nodes[armature].rest.scale.x() *= -1.0;
+  for (Pose& pose : clip.frames) pose[armature].scale.x() *= -1.0;
+  puppet.humanoid.reference = rest_pose(skeleton);
+  Diagnostics said;
+  const auto text = write_bvh(puppet.character, puppet.humanoid, clip, {}, said);
+  ASSERT_TRUE(text);
+  EXPECT_LT(largest_distance_m(skeleton, clip, load(*text)), 1e-12);
+  EXPECT_TRUE(said.warnings().empty());
+}
+
+TEST(WriteBvh, SaysWhichJointItCannotHold) {
+  test::Puppet puppet = test::make_puppet();
+  Clip clip = test::falling_clip(puppet.character.skeleton);
+  clip.frames[7][puppet.character.skeleton.find("LeftLeg")].translation.y() -= 0.2;
+  Diagnostics said;
+  ASSERT_TRUE(write_bvh(puppet.character, puppet.humanoid, clip, {}, said));
+  ASSERT_EQ(said.warnings().size(), 1u);
+  EXPECT_NE(said.warnings()[0].what.find("2.0 mm"), std::string::npos) << said.warnings()[0].what;
+  EXPECT_NE(said.warnings()[0].what.find("'LeftLeg'"), std::string::npos);
+}
+
+/// Hips below a root; the hips have rotation channels only, or all six.
+std::string with_hips_below_root(const std::string& hips_channels) {
+  return "HIERARCHY\nROOT Root\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation "
+         "Xrotation "
+         "Yrotation\n JOINT Hips\n {\n  OFFSET 0 90 0\n  CHANNELS " +
+         hips_channels +
+         "\n  End Site\n  {\n   OFFSET 0 50 0\n  }\n }\n}\nMOTION\nFrames: 1\nFrame Time: 0.01\n";
+}
+
+TEST(WriteBvh, HipsWithoutPositionChannelsMoveTheRootAboveThem) {
+  const Character character =
+      load(with_hips_below_root("3 Zrotation Xrotation Yrotation") + "1 2 3 10 20 30 40 50 60\n");
+  Humanoid humanoid;
+  humanoid.root = 1;
+  humanoid.world_from_file.scale = 0.01;
+  Clip clip = own_clip(character);
+  clip.frames.push_back(clip.frames[0]);
+  clip.frames[1][1].translation = Vec3(30, 20, -60);
+  Diagnostics said;
+  const auto text = write_bvh(character, humanoid, clip, {}, said);
+  ASSERT_TRUE(text);
+  EXPECT_TRUE(said.warnings().empty());
+  const Character again = load(*text);
+  const Clip read = own_clip(again);
+  for (std::size_t f = 0; f < 2; ++f) {
+    const Affine wanted = world_transforms(character.skeleton, clip.frames[f])[1];
+    const Affine seen = world_transforms(again.skeleton, read.frames[f])[1];
+    EXPECT_LT((wanted.matrix() - seen.matrix()).norm(), 1e-9);
+  }
+}
+
+TEST(WriteBvh, PositionsThatAreAddedToOffsetsAreWrittenSo) {
+  const Character character =
+      load(with_hips_below_root("6 Xposition Yposition Zposition Zrotation Xrotation Yrotation") +
+           "1 2 3 10 20 30 0 1 0 40 50 60\n");
+  ASSERT_TRUE(character.bvh->positions_add);
+  const auto text = write_bvh(character, {}, own_clip(character), {}, diagnostics);
+  ASSERT_TRUE(text);
+  const Character again = load(*text);
+  for (std::size_t c = 0; c < 12; ++c)
+    EXPECT_NEAR(again.bvh->frames[0][c], character.bvh->frames[0][c], 1e-12);
+}
+
 TEST(WriteBvh, RefusesAClipThatIsNotOfTheSkeleton) {
   const test::Puppet puppet = test::make_puppet();
-  EXPECT_FALSE(write_bvh(puppet.character, puppet.humanoid, {"empty", 60, {}, {}}, {}));
-  EXPECT_FALSE(write_bvh(puppet.character, puppet.humanoid, {"other", 60, {Pose(3)}, {}}, {}));
-  EXPECT_FALSE(write_bvh(puppet.character, {}, test::falling_clip(puppet.character.skeleton, 2), {}));
+  EXPECT_FALSE(write_bvh(puppet.character, puppet.humanoid, {"empty", 60, {}, {}}, {}, diagnostics));
+  EXPECT_FALSE(write_bvh(puppet.character, puppet.humanoid, {"other", 60, {Pose(3)}, {}}, {}, diagnostics));
+  EXPECT_FALSE(
+      write_bvh(puppet.character, {}, test::falling_clip(puppet.character.skeleton, 2), {}, diagnostics));
 }
 
 }  // namespace

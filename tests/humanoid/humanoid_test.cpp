@@ -67,7 +67,7 @@ TEST(Humanoid, FindsTheSameBonesWithoutNames) {
   }
 }
 
-TEST(Humanoid, ExchangesSidesThatTheFeetContradict) {
+TEST(Humanoid, NamesOfSidesWinOverTheFeetWithAWarning) {
   Character character = figure();
   for (Node& node : character.skeleton.nodes) {
     const auto left = node.name.find("Left"), right = node.name.find("Right");
@@ -77,8 +77,62 @@ TEST(Humanoid, ExchangesSidesThatTheFeetContradict) {
   Diagnostics diagnostics;
   const auto humanoid = map_humanoid(character, {}, diagnostics);
   ASSERT_TRUE(humanoid);
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("the names say; they win: --map"), std::string::npos);
+  EXPECT_EQ(node_of(character, *humanoid, Segment::forearm_l), "mixamorig:LeftForeArm");
+}
+
+/// The figure with its toes moved forwards (z) by so much, and its BVH-like names or none.
+Character with_toes_at(double z, bool names) {
+  Character character = figure();
+  for (Node& node : character.skeleton.nodes) {
+    if (node.name.find("ToeBase") != std::string::npos) node.rest.translation.z() = z;
+    if (!names) node.name.clear();
+  }
+  return character;
+}
+
+TEST(Humanoid, FeetThatPointNowhereExchangeNothing) {
+  for (const double z : {0.02, 1e-6, 0.0, -1e-6, -0.02}) {
+    const Character character = with_toes_at(z, true);
+    EXPECT_EQ(node_of(character, mapped(character), Segment::forearm_l), "mixamorig:LeftForeArm") << z;
+  }
+}
+
+TEST(Humanoid, FeetSayWhichSideIsLeftWhereNamesDoNot) {
+  for (const double z : {0.14, -0.14}) {
+    const Character character = with_toes_at(z, false);
+    const Humanoid humanoid = mapped(character);
+    const Vec3 thigh =
+        world_transforms(character.skeleton,
+                         rest_pose(character.skeleton))[humanoid.carrier_node(Segment::thigh_l)]
+            .translation();
+    EXPECT_EQ(thigh.x() > 0.0, z > 0.0);
+  }
+  Diagnostics diagnostics;
+  ASSERT_TRUE(map_humanoid(with_toes_at(0.0, false), {}, diagnostics));
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("which side is left"), std::string::npos);
+}
+
+TEST(Humanoid, TheUsersSidesWinOverNamesAndFeet) {
+  HumanoidOptions options;
+  for (const auto& [segment, bone] : {std::pair("thigh", "UpLeg"),
+                                      {"shank", "Leg"},
+                                      {"foot", "Foot"},
+                                      {"clavicle", "Shoulder"},
+                                      {"upperarm", "Arm"},
+                                      {"forearm", "ForeArm"},
+                                      {"hand", "Hand"}}) {
+    options.map[std::string(segment) + "_l"] = std::string("mixamorig:Right") + bone;
+    options.map[std::string(segment) + "_r"] = std::string("mixamorig:Left") + bone;
+  }
+  Diagnostics diagnostics;
+  const Character character = figure();
+  const auto humanoid = map_humanoid(character, options, diagnostics);
+  ASSERT_TRUE(humanoid) << humanoid.error().what;
+  EXPECT_EQ(node_of(character, *humanoid, Segment::hand_l), "mixamorig:RightHand");
   EXPECT_EQ(diagnostics.warnings().size(), 1u);
-  EXPECT_EQ(node_of(character, *humanoid, Segment::forearm_l), "mixamorig:RightForeArm");
 }
 
 TEST(Humanoid, ReadsUnitAndUpAxisFromTheFigure) {
@@ -95,6 +149,22 @@ TEST(Humanoid, ReadsUnitAndUpAxisFromTheFigure) {
   }
 }
 
+TEST(Humanoid, UnitsOfFilesThatStateNoneAreGuessedAsDrawn) {
+  // A child in centimetres is no giant in inches; a hundredth of a man is no man and a bit.
+  const std::tuple<double, SourceFormat, double> kCases[] = {
+      {100.0 * 0.55, SourceFormat::bvh, 0.01},   {100.0, SourceFormat::bvh, 0.01},
+      {1.0 / 0.0254, SourceFormat::bvh, 0.0254}, {1.0 / 0.056444, SourceFormat::bvh, 0.056444},
+      {0.01, SourceFormat::gltf, 100.0},         {1000.0, SourceFormat::gltf, 0.001}};
+  for (const auto& [units_per_metre, format, metres_per_unit] : kCases) {
+    Character character = figure({.unit = units_per_metre});
+    character.format = format;
+    Diagnostics diagnostics;
+    const auto humanoid = map_humanoid(character, {}, diagnostics);
+    ASSERT_TRUE(humanoid);
+    EXPECT_NEAR(humanoid->world_from_file.scale / metres_per_unit, 1.0, 1e-9) << units_per_metre;
+  }
+}
+
 TEST(Humanoid, TakesUnitUpAndHeightFromTheUser) {
   const Character character = figure({.unit = 100.0});
   EXPECT_DOUBLE_EQ(mapped(character, {.map = {}, .metres_per_unit = 0.02, .up_axis = {}, .height_m = {}})
@@ -105,8 +175,14 @@ TEST(Humanoid, TakesUnitUpAndHeightFromTheUser) {
 }
 
 TEST(Humanoid, AChildAndATallCartoonKeepTheirHeightAndAGiantBecomesAHuman) {
-  EXPECT_NEAR(mapped(figure({.unit = 1.6})).height_m, 2.8, 0.1);
-  EXPECT_NEAR(mapped(figure({.unit = 0.5})).height_m, 0.87, 0.03);
+  for (const auto& [unit, height_m] : {std::pair(1.6, 2.8), {0.5, 0.87}}) {
+    Diagnostics said;
+    const auto humanoid = map_humanoid(figure({.unit = unit}), {}, said);
+    ASSERT_TRUE(humanoid);
+    EXPECT_NEAR(humanoid->height_m, height_m, 0.1);
+    ASSERT_EQ(said.warnings().size(), 1u);
+    EXPECT_NE(said.warnings()[0].what.find("m tall"), std::string::npos);
+  }
   Diagnostics diagnostics;
   const auto giant = map_humanoid(figure({.unit = 5.0}), {}, diagnostics);
   ASSERT_TRUE(giant);

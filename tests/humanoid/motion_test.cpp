@@ -1,6 +1,8 @@
 // Figures that are only known from motion.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "humanoid/figures.h"
 #include "humanoid/humanoid.h"
 
@@ -100,7 +102,10 @@ TEST(Motion, TheMotionSaysWhichWayIsUp) {
   Pose pose = rest_pose(character.skeleton);
   pose[0].rotation = lying * pose[0].rotation;
   pose[0].translation = lying * pose[0].translation;
-  set_motion(character, {pose, pose, pose});
+  std::vector<Pose> walk(3, pose);
+  walk[1][0].translation.y() -= 1.0;
+  walk[2][0].translation.y() -= 2.0;
+  set_motion(character, walk);
   const Humanoid humanoid = mapped(character);
   EXPECT_EQ(humanoid.up_axis, 'z');
   const BodyPose body = segments_of(character.skeleton, humanoid, humanoid.reference);
@@ -262,6 +267,89 @@ TEST(Motion, ABindPoseServesWhereTheCharacterRestsInACrouch) {
   for (int s = 0; s < kSegmentCount; ++s)
     EXPECT_LT(angle_between(humanoid.node_from_segment[s], expected.node_from_segment[s]), 1e-6)
         << name(segment_at(s));
+}
+
+/// Frames in which the whole figure is turned and its hips lie at a place.
+std::vector<Pose> laid(const Character& character, const Quat& turn, const Vec3& hips, int count) {
+  Pose pose = rest_pose(character.skeleton);
+  const int root = character.skeleton.find("mixamorig:Hips");
+  pose[root].rotation = turn * pose[root].rotation;
+  pose[root].translation = hips;
+  return std::vector<Pose>(static_cast<std::size_t>(count), pose);
+}
+
+Humanoid with_motion(Character character, const std::vector<Pose>& frames, Diagnostics& diagnostics,
+                     SourceFormat format = SourceFormat::bvh) {
+  set_motion(character, frames);
+  character.format = format;
+  const auto result = map_humanoid(character, {}, diagnostics);
+  EXPECT_TRUE(result) << (result ? "" : result.error().message());
+  return result ? *result : Humanoid{};
+}
+
+TEST(UpAxis, WhoeverLiesInAMotionLiesByTheAxesOfHisSkeleton) {
+  const Character character = figure({.arm_elevation_deg = 90.0});
+  for (const Vec3& about : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)})
+    for (const double along : {0.0, -0.9, 2.0}) {
+      const Quat turn = exp_rotation(0.5 * kPi * about);
+      const Vec3 hips = Vec3(0, 0.12, 0) + along * (turn * Vec3::UnitY());
+      Diagnostics diagnostics;
+      EXPECT_EQ(with_motion(character, laid(character, turn, hips, 30), diagnostics).up_axis, 'y');
+      EXPECT_EQ(diagnostics.warnings().size(), 1u) << "a guess";
+      // A fall and a get-up stand at one end.
+      std::vector<Pose> frames = laid(character, turn, hips, 90);
+      const Pose standing = laid(character, Quat::Identity(), Vec3(0, 1, 0), 1).front();
+      for (int i = 0; i < 5; ++i) frames[static_cast<std::size_t>(i)] = standing;
+      Diagnostics of_fall, of_get_up;
+      EXPECT_EQ(with_motion(character, frames, of_fall).up_axis, 'y');
+      std::reverse(frames.begin(), frames.end());
+      EXPECT_EQ(with_motion(character, frames, of_get_up).up_axis, 'y');
+      EXPECT_TRUE(of_fall.warnings().empty() && of_get_up.warnings().empty());
+    }
+}
+
+TEST(UpAxis, OfGltfIsYHoweverTheFigureLies) {
+  const Character character = figure();
+  for (const Vec3& about : {Vec3(1, 0, 0), Vec3(0, 0, 1)}) {
+    Diagnostics diagnostics;
+    const auto frames = laid(character, exp_rotation(0.5 * kPi * about), Vec3(0, 0, 0.9), 30);
+    EXPECT_EQ(with_motion(character, frames, diagnostics, SourceFormat::gltf).up_axis, 'y');
+  }
+}
+
+TEST(UpAxis, AWalkOnAnotherFloorIsBelievedWithAWarning) {
+  const Character character = figure();
+  std::vector<Pose> frames;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 hips(0.3, 0.04 * i - 3.0, 1.0);
+    frames.push_back(laid(character, exp_rotation(Vec3(0.5 * kPi, 0, 0)), hips, 1).front());
+  }
+  Diagnostics diagnostics;
+  EXPECT_EQ(with_motion(character, frames, diagnostics).up_axis, 'z');
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("--up"), std::string::npos);
+}
+
+TEST(UpAxis, OfASkeletonWithZUpIsZ) {
+  const Character character = figure({.armature = Quat(Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitX()))});
+  Diagnostics diagnostics;
+  const std::vector<Pose> frames(30, rest_pose(character.skeleton));
+  EXPECT_EQ(with_motion(character, frames, diagnostics).up_axis, 'z');
+  EXPECT_TRUE(diagnostics.warnings().empty());
+}
+
+TEST(Motion, FeetThatSwingBackwardsExchangeNothing) {
+  Character character = figure({.arm_elevation_deg = 10.0});
+  std::vector<Pose> frames(40, rest_pose(character.skeleton));
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    for (const char* foot : {"mixamorig:LeftFoot", "mixamorig:RightFoot"})
+      if (i < 10) frames[i][character.skeleton.find(foot)].rotation = exp_rotation(Vec3(2.2, 0, 0));
+  for (Node& node : character.skeleton.nodes) node.name.clear();
+  Diagnostics diagnostics;
+  const Humanoid humanoid = with_motion(character, frames, diagnostics);
+  const int thigh = humanoid.carrier_node(Segment::thigh_l);
+  EXPECT_GT(world_transforms(character.skeleton, rest_pose(character.skeleton))[thigh].translation().x(),
+            0.0);
 }
 
 }  // namespace

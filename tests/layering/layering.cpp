@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 // In the order of the pipeline.
 constexpr std::string_view kRooms[] = {
-    "base",   "load", "humanoid", "restrict", "body",  "physics", "simulate", "behave", "rise", "export",
-    "render", "clip", "judge",    "bake",     "check", "study",   "batch",    "review", "cli"};
+    "base",   "load",   "bones", "humanoid", "restrict", "body",  "physics", "simulate", "behave", "rise",
+    "export", "render", "clip",  "judge",    "bake",     "check", "study",   "batch",    "review", "cli"};
 
 // Rooms that never include each other.
 const std::vector<std::vector<std::string_view>> kApart = {{"export", "render"},
@@ -35,8 +35,8 @@ const std::vector<ThirdParty>& third_parties() {
       {"Eigen/", {}},
       {"unsupported/Eigen/", {}},
       {"fmt/", {}},
-      {"nlohmann/", {"load", "export", "clip", "bake", "check", "study", "batch", "review"}},
-      {"toml++/", {"restrict", "body", "bake", "batch"}},
+      {"nlohmann/", {"load", "bones", "export", "clip", "bake", "check", "study", "batch", "review"}},
+      {"toml++/", {"bones", "restrict", "body", "bake", "batch"}},
       {"assimp/", {"load"}},
       {"draco/", {"load"}},
       {"meshoptimizer", {"load"}},

@@ -73,6 +73,49 @@ TEST(Bvh, ChildPositionsReplaceTheOffsetAxisByAxis) {
   EXPECT_EQ(c->animations[0].tracks.size(), 3u) << "root position and rotation, child position";
 }
 
+/// A child with six channels whose positions are given for two rows.
+std::string with_six_channels(const std::string& first, const std::string& second) {
+  return replaced(kHierarchy, "CHANNELS 3 Yrotation", "CHANNELS 6 Xposition Yposition Zposition Yrotation") +
+         "MOTION\nFrames: 2\nFrame Time: .01\n1 2 3 0 0 0 " + first + " 0 0 0\n1 2 3 0 0 0 " + second +
+         " 0 0 0\n";
+}
+
+TEST(Bvh, ChildPositionsAroundZeroAreAddedToTheOffset) {
+  const std::tuple<const char*, const char*, Vec3, bool> kCases[] = {
+      {"0 0 0", "0 0 0", Vec3(0, 10, 0), true},
+      {"0 0 0", "0.5 -1 0", Vec3(0.5, 9, 0), true},
+      {"0 10 0", "0.5 9 0", Vec3(0.5, 9, 0), false}};
+  for (const auto& [first, second, last, add] : kCases) {
+    const auto c = read(with_six_channels(first, second));
+    ASSERT_TRUE(c) << c.error().message();
+    EXPECT_EQ(c->bvh->positions_add, add) << second;
+    const Pose pose = sample(c->skeleton, c->animations.at(0), 1.0);
+    EXPECT_LT((pose[1].translation - last).norm(), 1e-12) << second;
+    EXPECT_LT((pose[0].translation - Vec3(1, 2, 3)).norm(), 1e-12) << "the root's are never added";
+  }
+}
+
+TEST(Bvh, BelievesTheUnitInTheNameOfAnEndSite) {
+  const auto stated = read(replaced(kHierarchy, "End Site", "End Site unit=0.01m,up=y") + kMotion);
+  ASSERT_TRUE(stated) << stated.error().message();
+  EXPECT_EQ(stated->metres_per_unit.value(), 0.01);
+  EXPECT_TRUE(stated->yup_from_file);
+  for (const char* name : {"End Site", "End Site LeftToe", "End Site unit=m,up=y", "End Site unit=-1m,up=y",
+                           "End Site unit=0.01"}) {
+    const auto c = read(replaced(kHierarchy, "End Site", name) + kMotion);
+    ASSERT_TRUE(c) << name;
+    EXPECT_FALSE(c->metres_per_unit) << name;
+  }
+}
+
+TEST(Bvh, WarnsOfLessThanAFrameASecond) {
+  for (const auto& [time, warnings] : {std::pair("33.3333", 1u), {"1.5", 1u}, {"1", 0u}, {"0.04", 0u}}) {
+    Diagnostics diagnostics;
+    ASSERT_TRUE(read(kHierarchy + replaced(kMotion, ".0083333", time), diagnostics));
+    EXPECT_EQ(diagnostics.warnings().size(), warnings) << time;
+  }
+}
+
 TEST(Bvh, AcceptsWhatExportersWrite) {
   std::string crlf;
   for (const char ch : kHierarchy + kMotion) crlf += ch == '\n' ? "\r\n" : std::string(1, ch);

@@ -9,10 +9,10 @@
 
 #include "bake/bake.h"
 #include "bake/direction.h"
-#include "rise/whole_body.h"
+#include "base/character_path.h"
 #include "body/ground.h"
-#include "load/character_path.h"
 #include "load/load.h"
+#include "rise/whole_body.h"
 #include "support/extra_data.h"
 
 namespace ukemi {

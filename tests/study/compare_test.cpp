@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/character_path.h"
 #include "base/parallel.h"
-#include "load/character_path.h"
 #include "load/load.h"
 #include "study/compare_pictures.h"
 

@@ -12,8 +12,8 @@
 
 #include "bake/bake.h"
 #include "bake/report.h"
+#include "base/character_path.h"
 #include "base/numbers.h"
-#include "load/character_path.h"
 #include "load/load.h"
 #include "study/compare.h"
 
@@ -125,16 +125,18 @@ Status measure_bakes(const Character& character, int count) {
         simulate(simulation_input(*prepared, prepared->scene, settings.simulation), diagnostics);
     if (!simulation) return simulation.error();
     const double simulated = thread_seconds();
-    const auto outcome = bake(character, settings, diagnostics);
+    auto outcome = bake(character, settings, diagnostics);
     if (!outcome) return outcome.error();
     const double baked = thread_seconds();
-    const ReducedClip reduced = reduce_keys(character.skeleton, outcome->timeline.clip,
-                                            outcome->prepared.humanoid.world_from_file, settings.keys);
+    BakedFile file{std::move(*outcome), {}, {}, {}, {}, {}};
+    const Humanoid& humanoid = file.outcome.prepared.humanoid;
+    file.reduced =
+        reduce_keys(character.skeleton, file.outcome.timeline.clip, humanoid.world_from_file, settings.keys);
     const double cut = thread_seconds();
-    const auto glb = write_glb(character, outcome->prepared.humanoid, reduced, GltfOptions{});
+    const auto glb = write_glb(character, humanoid, file.reduced, GltfOptions{});
     if (!glb) return glb.error();
     const double written = thread_seconds();
-    bytes += glb->size() + report_json("", character, settings, *outcome, reduced, diagnostics).size();
+    bytes += glb->size() + report_json("", character, settings, file, diagnostics).size();
     const double end = thread_seconds();
     prepare_s += ready - start;
     simulate_s += simulated - ready;

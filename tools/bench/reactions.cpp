@@ -9,7 +9,7 @@
 
 #include "bake/bake.h"
 #include "bake/setting_table.h"
-#include "load/character_path.h"
+#include "base/character_path.h"
 #include "load/load.h"
 
 namespace ukemi {

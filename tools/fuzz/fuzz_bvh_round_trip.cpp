@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!first || !is_moderate(*first)) return 0;
   const Animation& animation = first->animations.front();
   const Clip clip = sample_clip(first->skeleton, animation, animation.fps);
-  const auto text = write_bvh(*first, Humanoid{}, clip, BvhOptions{});
+  const auto text = write_bvh(*first, Humanoid{}, clip, BvhOptions{}, diagnostics);
   fuzz::require(static_cast<bool>(text), "what was read can be written");
   const auto second = read_bvh(*text, "folder/output.bvh", diagnostics);
   if (!second) std::fputs((second.error().message() + '\n').c_str(), stderr);

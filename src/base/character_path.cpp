@@ -1,4 +1,4 @@
-#include "load/character_path.h"
+#include "base/character_path.h"
 
 #include "base/files.h"
 

@@ -1,4 +1,4 @@
-#include "bake/map_file.h"
+#include "bones/map_file.h"
 
 #include <fmt/format.h>
 

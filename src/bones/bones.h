@@ -9,7 +9,7 @@
 #include "base/character.h"
 #include "base/result.h"
 #include "base/segments.h"
-#include "humanoid/humanoid.h"
+#include "bones/options.h"
 
 namespace ukemi {
 
@@ -31,17 +31,31 @@ struct Bones {
 /// (0).
 std::vector<char> skin_joints(const Character& character);
 
+/// Which nodes carry vertices: most of a skinned one's weight, or a mesh of their own.
+std::vector<char> carries_skin(const Character& character);
+
 /// Every source in turn. Errors: usage for a bad user map; input when the must-have bones (pelvis, head,
-/// upper arms, forearms, thighs, shanks) are not there.
-Result<Bones> find_bones(const Character& character, const HumanoidOptions& options);
+/// upper arms, forearms, thighs, shanks) are not there. A second figure in the file is a warning.
+Result<Bones> find_bones(const Character& character, const HumanoidOptions& options,
+                         Diagnostics& diagnostics);
 
 /// The same from the user's map and, whatever the names say, by shape; nothing where a must-have bone is
 /// missing.
 std::optional<Bones> find_bones_by_shape(const Character& character, const HumanoidOptions& options);
 
-/// The bones by shape alone: a trunk with two mirrored legs below and two mirrored arms above.
-/// Empty (all -1) when there is none.
-Bones find_by_topology(const Character& character, const Pose& pose);
+/// The node of that label. Errors: usage, with what there is.
+Result<int> node_of_label(const Character& character, const std::string& label);
+/// The bones that the user names. Errors: usage (no such segment or node, a node named twice).
+Status apply_user_map(const Character& character, const HumanoidOptions& options, Bones& bones);
+
+/// Which relation between bones no body has ("head (A) hangs above pelvis (B)"); empty where all must-have
+/// bones are there and fit.
+std::string misplaced(const Character& character, const Bones& bones);
+
+/// The bones by shape alone, of the `allowed` nodes: a trunk with two mirrored legs below and two mirrored
+/// arms above; limbs that `given` starts are followed from there. Empty (all -1) when there is none.
+Bones find_by_topology(const Character& character, const Pose& pose, const std::vector<char>& allowed,
+                       const Bones& given);
 
 /// Lowest common ancestor (a node is its own ancestor); -1 when there is none.
 int common_ancestor(const Skeleton& skeleton, int a, int b);

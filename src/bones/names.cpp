@@ -1,4 +1,4 @@
-#include "humanoid/names.h"
+#include "bones/names.h"
 
 #include <algorithm>
 #include <array>
@@ -138,6 +138,22 @@ constexpr Pattern kPatterns[] = {
     {Part::toe, "ball", 9},
     {Part::toe, "foot", 3, true},
     {Part::toe, "toesbase", 9},
+
+    // MikuMikuDance
+    {Part::pelvis, "下半身", 6},
+    {Part::spine, "上半身", 8},
+    {Part::neck, "首", 10},
+    {Part::head, "頭", 10},
+    {Part::clavicle, "肩", 9},
+    {Part::upper_arm, "腕", 9},
+    {Part::forearm, "ひじ", 9},
+    {Part::hand, "手首", 10},
+    {Part::finger, "中指１", 10},
+    {Part::finger, "人指１", 3},
+    {Part::thigh, "足", 9},
+    {Part::shank, "ひざ", 9},
+    {Part::foot, "足首", 10},
+    {Part::toe, "つま先", 9},
 };
 
 constexpr std::string_view kLeft[] = {"l", "left", "lft"};
@@ -149,9 +165,9 @@ constexpr std::string_view kHelper[] = {
     "corrective", "aim",      "dummy", "wgt",        "vis",       "tweak",  "pivot"};
 constexpr std::string_view kEnd[] = {"end", "nub", "tip", "endsite", "site"};
 // Prefixes and words that say nothing about the part.
-constexpr std::string_view kPrefix[] = {"mixamorig", "bip",  "biped", "valve", "cc",       "base", "def",
-                                        "j",         "c",    "b",     "bn",    "sk",       "skel", "rig",
-                                        "jnt",       "bone", "body",  "char",  "character"};
+constexpr std::string_view kPrefix[] = {"mixamorig", "bip", "biped", "valve", "cc",   "base",     "def",
+                                        "j",         "c",   "b",     "bn",    "sk",   "skel",     "rig",
+                                        "m",         "jnt", "bone",  "body",  "char", "character"};
 constexpr std::string_view kFiller[] = {"bone", "joint", "jnt", "jt", "org", "jnts"};
 
 bool contains(std::span<const std::string_view> list, std::string_view word) {
@@ -197,7 +213,10 @@ bool is_stem(std::string_view word) {
 /// "lefthand" -> left, "hand"; "lhand" -> left, "hand"; "thighl" -> left, "thigh". False when it is no such
 /// word.
 bool split_side(std::string& word, Side& side) {
-  for (const auto& [prefix, s] : {std::pair{std::string_view("left"), Side::left}, {"right", Side::right}}) {
+  for (const auto& [prefix, s] : {std::pair{std::string_view("left"), Side::left},
+                                  {"right", Side::right},
+                                  {"左", Side::left},
+                                  {"右", Side::right}}) {
     if (word.size() > prefix.size() && word.starts_with(prefix)) {
       word.erase(0, prefix.size());
       side = s;

@@ -1,4 +1,4 @@
-#include "humanoid/names.h"
+#include "bones/names.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,191 @@
+// What a bake writes, read back: its poses, and its joints in the range that it carries.
+#include <gtest/gtest.h>
+
+#include "bake/bake.h"
+#include "judge/rom_figures.h"
+#include "load/load.h"
+
+namespace ukemi {
+namespace {
+
+struct Written {
+  BakedFile baked;
+  Character file;  // the first output
+};
+
+Character character_of(const std::string& path) {
+  Diagnostics diagnostics;
+  auto character = load_character(path, {}, diagnostics);
+  if (!character) throw std::runtime_error(character.error().message());
+  return std::move(*character);
+}
+Character mannequin() { return character_of(std::string(UKEMI_ASSETS_FOLDER) + "/characters/mannequin.glb"); }
+Character public_fault(const std::string& name) {
+  return character_of(std::string(UKEMI_TEST_DATA) + "/public_faults/" + name);
+}
+
+/// Baked and read back, as `output`.
+Written written(const Character& character, BakeSettings settings, const std::string& output,
+                Diagnostics& diagnostics) {
+  settings.outputs = {output};
+  auto baked = bake_loaded(character, settings, diagnostics);
+  if (!baked) throw std::runtime_error(baked.error().message());
+  const std::vector<std::uint8_t>& bytes = baked->files.front().bytes;
+  Diagnostics said;
+  auto file = output.ends_with(".bvh")
+                  ? read_bvh({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, output, said)
+                  : read_gltf(bytes, output, said);
+  if (!file) throw std::runtime_error(file.error().message());
+  return {std::move(*baked), std::move(*file)};
+}
+
+double largest_distance_m(const Written& a, const Written& b) {
+  const Skeleton& skeleton = a.file.skeleton;
+  double largest = 0.0;
+  const Animation &in_a = a.file.animations.back(), &in_b = b.file.animations.back();
+  for (double t = 0.0; t <= in_a.duration_s(); t += 0.05) {
+    const auto at_a = world_transforms(skeleton, sample(skeleton, in_a, t));
+    const auto at_b = world_transforms(skeleton, sample(skeleton, in_b, t));
+    for (std::size_t i = 0; i < at_a.size(); ++i)
+      largest = std::max(largest, (at_a[i].translation() - at_b[i].translation()).norm());
+  }
+  return largest;
+}
+
+TEST(WrittenClip, AnAdditiveOneIsReadAsThePosesThatItMakes) {
+  for (const Character& character : {public_fault("turned_thighs.gltf"), mannequin()}) {
+    BakeSettings settings;
+    settings.simulation.duration_s = 0.5;
+    Diagnostics diagnostics;
+    const Written plain = written(character, settings, "plain.glb", diagnostics);
+    settings.additive = true;
+    const Written additive = written(character, settings, "additive.glb", diagnostics);
+    EXPECT_LT(largest_distance_m(plain, additive), 1e-4);
+    const auto humanoid = map_humanoid(additive.file, {}, diagnostics);
+    ASSERT_TRUE(humanoid);
+    const auto range = load_range_of_motion("human");
+    const RomPaths paths =
+        rom_paths(ClipToCheck{&additive.file, additive.file.animations.size() - 1, {}}, *humanoid, *range);
+    EXPECT_EQ(paths.rolls, Rolls::stored);
+    EXPECT_LT(rom_figures(paths).excess_max_deg, 1.0);
+  }
+}
+
+/// Largest excess of the file's last clip, degrees, as `rom --check` has it.
+double checked_excess_deg(const Written& w) {
+  Diagnostics diagnostics;
+  const auto humanoid = map_humanoid(w.file, {}, diagnostics);
+  EXPECT_TRUE(humanoid);
+  const auto range = load_range_of_motion("human");
+  return rom_figures(rom_paths(ClipToCheck{&w.file, w.file.animations.size() - 1, {}}, *humanoid, *range))
+      .excess_max_deg;
+}
+
+TEST(WrittenClip, KeysKeepEveryJointWithinATwentiethOfADegree) {
+  for (const char* segment : {"hand_l", "head", "chest"})
+    for (const double key_error_m : {0.0005, 0.005}) {
+      BakeSettings settings;
+      settings.hit = *segment_named(segment);
+      settings.strength = 2.0;
+      settings.keys.tolerance_m = key_error_m;
+      settings.simulation.duration_s = 2.0;
+      Diagnostics diagnostics;
+      const Written w = written(mannequin(), settings, "hit.glb", diagnostics);
+      EXPECT_LT(w.baked.written.excess_max_deg, 0.051) << segment;
+      EXPECT_LT(checked_excess_deg(w), 0.06) << segment;
+      EXPECT_EQ(w.baked.written.over_1deg, 0);
+      EXPECT_GT(w.baked.written.samples, 1000);
+      EXPECT_LT(w.baked.reduced.error_m, key_error_m + 1e-9);
+    }
+}
+
+TEST(WrittenClip, AStartOutsideTheRangeIsSaidAndJudgedByTheRangeInForce) {
+  Character character = mannequin();
+  // A pose with an elbow bent the wrong way by 40 degrees, as the file's only clip.
+  Diagnostics diagnostics;
+  const auto humanoid = map_humanoid(character, {}, diagnostics);
+  ASSERT_TRUE(humanoid);
+  const Pose stand = start_pose(character, *humanoid, StartPose::stand);
+  const BodyPose from = segments_of(character.skeleton, *humanoid, stand);
+  BodyPose to = from;
+  const Segment fore = Segment::forearm_l, hand = Segment::hand_l;
+  const Rigid elbow{from[index(fore)].rotation * exp_rotation(Vec3(0, 0, radians(-40))) *
+                        from[index(fore)].rotation.conjugate(),
+                    Vec3::Zero()};
+  for (const Segment s : {fore, hand}) to[index(s)].rotation = elbow.rotation * from[index(s)].rotation;
+  const Pose bent = pose_skeleton(character.skeleton, *humanoid, stand, from, to);
+  Animation animation{"bent", 0.0, 1.0, 30.0, {}};
+  for (int i = 0; i < character.skeleton.size(); ++i) {
+    const Quat& q = bent[i].rotation;
+    const Vec3& t = bent[i].translation;
+    animation.tracks.push_back({i,
+                                TrackPath::rotation,
+                                Interpolation::linear,
+                                {0.0, 1.0},
+                                {q.x(), q.y(), q.z(), q.w(), q.x(), q.y(), q.z(), q.w()}});
+    animation.tracks.push_back({i,
+                                TrackPath::translation,
+                                Interpolation::linear,
+                                {0.0, 1.0},
+                                {t.x(), t.y(), t.z(), t.x(), t.y(), t.z()}});
+  }
+  character.animations = {animation};
+  BakeSettings settings;
+  settings.clip = "bent";
+  settings.simulation.duration_s = 0.5;
+  Diagnostics said;
+  const Written w = written(character, settings, "hit.glb", said);
+  ASSERT_FALSE(w.baked.outcome.prepared.widened.empty());
+  ASSERT_FALSE(said.warnings().empty());
+  EXPECT_NE(said.warnings()[0].what.find("widened"), std::string::npos);
+  EXPECT_EQ(w.baked.outcome.limits.over_1deg, 0);
+  EXPECT_GT(w.baked.outcome.human.excess_max_deg, 5.0);
+  EXPECT_GT(w.baked.outcome.human.over_1deg, 0);
+  EXPECT_LT(w.baked.written.excess_max_deg, 1.0);
+  EXPECT_LT(checked_excess_deg(w), 1.0) << "by the range that the clip carries";
+}
+
+TEST(WrittenClip, TheBvhOfAMirroredOrSmallFigureIsItsGlb) {
+  for (const char* name : {"mirrored.gltf", "small.gltf", "mesh_named_chest.gltf", "figure.gltf"}) {
+    const Character character = public_fault(name);
+    BakeSettings settings;
+    settings.simulation.duration_s = 0.6;
+    settings.keys.enabled = false;
+    Diagnostics diagnostics;
+    const Written glb = written(character, settings, "hit.glb", diagnostics);
+    const Written bvh = written(character, settings, "hit.bvh", diagnostics);
+    const auto of_glb = map_humanoid(glb.file, {}, diagnostics),
+               of_bvh = map_humanoid(bvh.file, {}, diagnostics);
+    ASSERT_TRUE(of_glb && of_bvh) << name;
+    EXPECT_EQ(bvh.file.skeleton.find(std::string(name) == "mesh_named_chest.gltf" ? "Chest" : "Hips") >= 0,
+              true);
+    const Animation &a = glb.file.animations.back(), &b = bvh.file.animations.back();
+    double largest = 0.0;
+    for (double t = 0.0; t <= b.duration_s(); t += 1.0 / 60.0) {
+      const auto at_a = world_transforms(glb.file.skeleton, sample(glb.file.skeleton, a, t));
+      const auto at_b = world_transforms(bvh.file.skeleton, sample(bvh.file.skeleton, b, t));
+      for (const SegmentNodes& segment : of_glb->segments) {
+        const int node = segment.node();
+        const int other = node < 0 ? -1 : bvh.file.skeleton.find(glb.file.skeleton.nodes[node].name);
+        if (other < 0) continue;
+        largest = std::max(largest, (of_glb->world_from_file * Vec3(at_a[node].translation()) -
+                                     of_bvh->world_from_file * Vec3(at_b[other].translation()))
+                                        .norm());
+      }
+    }
+    EXPECT_LT(largest, 0.0005) << name;
+  }
+}
+
+TEST(WrittenClip, OneFigureOfTwoMovesAsItDoesAlone) {
+  BakeSettings settings;
+  settings.simulation.duration_s = 1.0;
+  Diagnostics alone_said, said;
+  const Written alone = written(public_fault("figure.gltf"), settings, "hit.glb", alone_said);
+  const Written of_two = written(public_fault("two_figures.gltf"), settings, "hit.glb", said);
+  EXPECT_EQ(alone.baked.outcome.figures.hash, of_two.baked.outcome.figures.hash);
+  EXPECT_FALSE(said.warnings().empty());
+}
+
+}  // namespace
+}  // namespace ukemi

@@ -1,0 +1,167 @@
+// Small files that were once read wrong without a word. figure.gltf is a plain man of 1.74 m; the others
+// differ from it in one thing.
+#include <gtest/gtest.h>
+
+#include "humanoid/humanoid.h"
+#include "load/load.h"
+
+namespace ukemi {
+namespace {
+
+struct Mapped {
+  Character character;
+  Result<Humanoid> humanoid;
+  Diagnostics diagnostics;
+
+  std::string node(Segment s) const {
+    const int node = humanoid ? humanoid->segments[index(s)].node() : -1;
+    return node < 0 ? "" : character.skeleton.nodes[node].name;
+  }
+  std::string warnings() const {
+    std::string text;
+    for (const Warning& warning : diagnostics.warnings()) text += warning.what + "\n";
+    return text;
+  }
+};
+
+Mapped mapped(const std::string& file, const HumanoidOptions& options = {}) {
+  Diagnostics diagnostics;
+  auto character = load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/" + file, {}, diagnostics);
+  EXPECT_TRUE(character) << file;
+  auto humanoid = map_humanoid(*character, options, diagnostics);
+  return {std::move(*character), std::move(humanoid), std::move(diagnostics)};
+}
+
+void expect_plain_figure(const Mapped& m) {
+  ASSERT_TRUE(m.humanoid) << m.humanoid.error().what;
+  EXPECT_NEAR(m.humanoid->height_m, 1.74, 0.05);
+  EXPECT_EQ(m.humanoid->up_axis, 'y');
+  const std::pair<Segment, const char*> kNodes[] = {{Segment::pelvis, "Hips"},
+                                                    {Segment::abdomen, "Spine"},
+                                                    {Segment::chest, "Chest"},
+                                                    {Segment::head, "Head"},
+                                                    {Segment::clavicle_l, "LeftShoulder"},
+                                                    {Segment::hand_r, "RightHand"},
+                                                    {Segment::upperarm_l, "LeftArm"},
+                                                    {Segment::thigh_l, "LeftUpLeg"},
+                                                    {Segment::foot_r, "RightFoot"}};
+  for (const auto& [segment, name] : kNodes) EXPECT_EQ(m.node(segment), name);
+}
+
+TEST(PublicFaults, ThePlainFigure) {
+  const Mapped m = mapped("figure.gltf");
+  expect_plain_figure(m);
+  EXPECT_EQ(m.warnings(), "");
+}
+
+TEST(PublicFaults, ASleeperLiesInAWorldWithYUp) {
+  const Mapped m = mapped("asleep.bvh");
+  expect_plain_figure(m);
+  const BodyPose body = segments_of(m.character.skeleton, *m.humanoid,
+                                    sample(m.character.skeleton, m.character.animations[0], 0.0));
+  const Vec3 rise = body[index(Segment::head)].translation - body[index(Segment::pelvis)].translation;
+  EXPECT_LT(std::abs(rise.y()), 0.2 * rise.norm());
+}
+
+TEST(PublicFaults, AMeshNamedHeadIsNoHead) {
+  const Mapped m = mapped("mesh_named_head.gltf");
+  ASSERT_TRUE(m.humanoid) << m.humanoid.error().what;
+  EXPECT_EQ(m.node(Segment::head), "def_c_neckB");
+  EXPECT_EQ(m.node(Segment::pelvis), "def_c_hip");
+  EXPECT_EQ(m.node(Segment::hand_l), "def_l_wrist");
+  EXPECT_NEAR(m.humanoid->height_m, 1.74, 0.02);
+}
+
+TEST(PublicFaults, AToeOrEndAMicrometreBehindTheAnkleExchangesNothing) {
+  for (const char* file : {"toe_noise.gltf", "foot_end_noise.bvh"}) {
+    const Mapped m = mapped(file);
+    expect_plain_figure(m);
+    EXPECT_EQ(m.warnings(), "") << file;
+  }
+}
+
+TEST(PublicFaults, GroundAndRaisedArmsAddNothingToTheHeight) {
+  for (const char* file : {"with_ground.gltf", "arms_up.gltf"}) expect_plain_figure(mapped(file));
+}
+
+TEST(PublicFaults, ASmallFigureIsSaidToBeSmall) {
+  const Mapped m = mapped("small.gltf");
+  ASSERT_TRUE(m.humanoid);
+  EXPECT_NEAR(m.humanoid->height_m, 0.94, 0.02);
+  EXPECT_NE(m.warnings().find("m tall"), std::string::npos);
+}
+
+TEST(PublicFaults, AMirroredArmatureExchangesTheSidesOfTheNames) {
+  const Mapped m = mapped("mirrored.gltf");
+  ASSERT_TRUE(m.humanoid);
+  EXPECT_EQ(m.node(Segment::hand_l), "RightHand");
+  EXPECT_NE(m.warnings().find("mirrored"), std::string::npos);
+  const BodyPose body = segments_of(m.character.skeleton, *m.humanoid, m.humanoid->reference);
+  EXPECT_GT((body[index(Segment::pelvis)].rotation * Vec3::UnitX()).z(), 0.99)
+      << "faces where its toes point";
+}
+
+TEST(PublicFaults, TwoFiguresAreSaidAndMayBeChosen) {
+  const Mapped m = mapped("two_figures.gltf");
+  expect_plain_figure(m);
+  EXPECT_NE(m.warnings().find("--root 'Hips.001'"), std::string::npos) << m.warnings();
+  HumanoidOptions options;
+  options.root = "Hips.001";
+  const Mapped other = mapped("two_figures.gltf", options);
+  ASSERT_TRUE(other.humanoid);
+  EXPECT_EQ(other.node(Segment::hand_l), "LeftHand.001");
+  EXPECT_EQ(other.node(Segment::pelvis), "Hips.001");
+}
+
+TEST(PublicFaults, ASkinThatCoversTheHeadAloneHidesNoLimb) {
+  const Mapped m = mapped("head_skin.gltf");
+  ASSERT_TRUE(m.humanoid) << m.humanoid.error().what;
+  EXPECT_EQ(m.node(Segment::pelvis), "C_spine01_bind_jx");
+  EXPECT_EQ(m.node(Segment::head), "C_head01_bind_jx");
+  EXPECT_EQ(m.node(Segment::hand_l), "L_hand01_bind_jx");
+  EXPECT_EQ(m.node(Segment::foot_r), "R_foot01_bind_jx");
+}
+
+TEST(PublicFaults, AVolumeOfTheShinIsNoFoot) {
+  const Mapped m = mapped("sl_body.gltf");
+  ASSERT_TRUE(m.humanoid) << m.humanoid.error().what;
+  EXPECT_EQ(m.node(Segment::thigh_l), "mHipLeft");
+  EXPECT_EQ(m.node(Segment::shank_l), "mKneeLeft");
+  EXPECT_EQ(m.node(Segment::foot_l), "mAnkleLeft");
+  EXPECT_EQ(m.node(Segment::head), "mHead");
+  EXPECT_EQ(m.node(Segment::upperarm_r), "mShoulderRight");
+}
+
+TEST(PublicFaults, UpperAndLowerBodyMayHangSideBySide) {
+  const Mapped m = mapped("mmd_bones.gltf");
+  ASSERT_TRUE(m.humanoid) << m.humanoid.error().what;
+  EXPECT_EQ(m.node(Segment::pelvis), "下半身");
+  EXPECT_EQ(m.node(Segment::chest), "上半身2");
+  EXPECT_EQ(m.node(Segment::thigh_l), "左足");
+  EXPECT_EQ(m.node(Segment::foot_l), "左足首");
+  EXPECT_EQ(m.node(Segment::forearm_r), "右ひじ");
+  EXPECT_EQ(m.node(Segment::hand_r), "右手首");
+}
+
+TEST(PublicFaults, ARootBetweenTheFeetIsNoPelvis) {
+  const Mapped m = mapped("root_at_feet.gltf");
+  ASSERT_TRUE(m.humanoid) << m.humanoid.error().what;
+  EXPECT_EQ(m.node(Segment::pelvis), "body_IK");
+  EXPECT_EQ(m.node(Segment::chest), "body_upper");
+  EXPECT_EQ(m.node(Segment::head), "head");
+  EXPECT_EQ(m.humanoid->segments[index(Segment::head)].chain.size(), 1u);
+}
+
+TEST(PublicFaults, BonesSideBySideAreRefusedWithTheRelationThatFails) {
+  const Mapped m = mapped("flat_bones.gltf");
+  ASSERT_FALSE(m.humanoid);
+  EXPECT_NE(m.humanoid.error().what.find("does not hang below"), std::string::npos)
+      << m.humanoid.error().what;
+}
+
+TEST(PublicFaults, AFrameTimeInMillisecondsIsSaid) {
+  EXPECT_NE(mapped("frame_time_ms.bvh").warnings().find("less than one frame a second"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ukemi
