@@ -10,6 +10,7 @@
 #include "bake/append.h"
 #include "bake/outputs.h"
 #include "bake/report.h"
+#include "bake/score.h"
 #include "bake/setting_table.h"
 #include "bake/sheet.h"
 #include "base/character_path.h"
@@ -329,6 +330,7 @@ Result<BakedClip> bake(const Character& character, const BakeSettings& settings,
   const auto human = load_range_of_motion("human");
   if (!human) return human.error();
   outcome.human = clip_limits(outcome.prepared.humanoid, *human, outcome.timeline.trajectory.frames);
+  outcome.score = human_score(character, settings, outcome);
   outcome.timings_s.resample = watch.lap();
   outcome.timings_s.total = watch.total();
   return outcome;

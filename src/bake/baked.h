@@ -32,6 +32,7 @@ struct BakedClip {
   ClipLimits human;                // of the whole timeline, against the human range
   double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
   ResampleError resample_error;
+  double score = 0.0;  // how much like a person's the answer is, see score.h
   BakeTimings timings_s;
 };
 

@@ -50,6 +50,7 @@ ReactionFigures figures_of(const BakedFile& baked) {
   figures.over_1deg = outcome.limits.over_1deg;
   figures.travel_m = std::hypot(moved.x(), moved.z());
   figures.momentum_n_s = outcome.figures.momentum_n_s;
+  figures.score = outcome.score;
   figures.rest_time_s = outcome.figures.rest_time_s;
   const Response response = response_of(outcome);
   figures.outcome = name(response.outcome);

@@ -17,6 +17,7 @@ struct ReactionFigures {
   long over_1deg = 0;           // samples
   double travel_m = 0.0;        // of the pelvis over the floor, from the first frame to the last
   double momentum_n_s = 0.0;    // of the blow
+  double score = 0.0;           // share of the criteria of human motion that the clip meets
   std::optional<double> rest_time_s;
   std::string outcome;   // stood, stepped, fell
   std::string end_pose;  // standing, kneeling, seated, supine, prone, left_side, right_side
@@ -36,6 +37,7 @@ void for_each_figure(Figures& figures, const Visit& visit) {
   visit("over_1deg", figures.over_1deg);
   visit("travel_m", figures.travel_m);
   visit("momentum_n_s", figures.momentum_n_s);
+  visit("score", figures.score);
   visit("rest_time_s", figures.rest_time_s);
   visit("outcome", figures.outcome);
   visit("end_pose", figures.end_pose);

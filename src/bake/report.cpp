@@ -177,6 +177,7 @@ Json response_json(const BakedClip& outcome) {
   json["turn_deg"] = response.turn_deg;
   json["delivered_n_s"] = figures.delivered_n_s;
   json["trials"] = 1;
+  json["score"] = outcome.score;
   return json;
 }
 

@@ -29,7 +29,7 @@ struct JudgedClip {
 /// clip).
 Result<JudgedClip> judge_clip(const JudgeClipSettings& settings, Diagnostics& diagnostics);
 
-/// `judge --json`, format 1: assets/schemas/judge.json.
+/// `judge --json`, format 1: assets/schemas/judge.schema.json.
 std::string judgement_json(const JudgedClip& judged, const Diagnostics& diagnostics);
 /// For people.
 std::string judgement_text(const JudgedClip& judged);

@@ -12,7 +12,11 @@
 
 #include "bake/bake.h"
 #include "bake/direction.h"
+<<<<<<< HEAD
 #include "base/character_path.h"
+=======
+#include "bake/record.h"
+>>>>>>> 37b4325 (Score of every bake in its report and manifest; schema of judge's output)
 #include "judge/judge.h"
 #include "load/load.h"
 #include "support/extra_data.h"
@@ -180,6 +184,25 @@ TEST_F(JudgedFiles, TellWhereTheirBlowIs) {
   JudgeClipSettings from = clip_of(file);
   from.judge.from_s = 0.1;
   EXPECT_TRUE(judgement_of(from).impact_found);
+}
+
+TEST_F(JudgedFiles, ScoreAsTheirReportsSay) {
+  BakeSettings settings;
+  settings.preset = "kick";
+  settings.from = *parse_direction("left");
+  settings.behaviour = Behaviour::limp;
+  settings.keys.enabled = false;
+  settings.outputs = {folder_ / "hit.glb"};
+  Diagnostics diagnostics;
+  const auto file = bake_file("mannequin", settings, diagnostics);
+  ASSERT_TRUE(file) << file.error().message();
+  JudgeClipSettings judged = clip_of(folder_ / "hit.glb");
+  judged.judge.momentum_n_s = file->outcome.figures.momentum_n_s;
+  const Json response = Json::parse(file->report)["response"];
+  const Judgement judgement = judgement_of(judged);
+  EXPECT_DOUBLE_EQ(response["score"].get<double>(), judgement.score);
+  EXPECT_LT(judgement.score, 0.9);
+  EXPECT_EQ(figures_of(*file).score, judgement.score);
 }
 
 TEST_F(JudgedFiles, AreRefusedWhereThereIsNothingToJudge) {

@@ -147,6 +147,13 @@ TEST_F(Schema, RangesOfMotionWithEveryQuestion) {
   said("rom", {"rom", "--joint", "shoulder_r", "--state", "30,20", "--json"});
 }
 
+TEST_F(Schema, JudgementsOfWhoStaysUpAndOfWhoFalls) {
+  const Json stands = said("judge", {"judge", "mannequin#walk", "--json"});
+  EXPECT_TRUE(stands["events"]["pelvis_contact"].is_null());
+  EXPECT_EQ(run({"bake", "mannequin", "--behaviour", "limp", "--clip-only", "-o", "a.glb"}).status, 0);
+  EXPECT_FALSE(said("judge", {"judge", "a.glb", "--json"})["events"]["pelvis_contact"].is_null());
+}
+
 TEST_F(Schema, ComparisonAndDifference) {
   EXPECT_GT(said("compare", {"compare", "mannequin", "--hits", "1", "--duration", "0.1", "--json"})["methods"]
                 .size(),

@@ -1,0 +1,13 @@
+// How much like a person's the answer to a blow is.
+#pragma once
+
+#include "bake/baked.h"
+#include "bake/settings.h"
+#include "base/character.h"
+
+namespace ukemi {
+
+/// Score of a baked clip from the blow to where it begins to recover, see judge/judge.h.
+double human_score(const Character& character, const BakeSettings& settings, const BakedClip& baked);
+
+}  // namespace ukemi
