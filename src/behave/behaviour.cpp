@@ -9,7 +9,7 @@
 namespace ukemi {
 namespace {
 
-constexpr double kFullFlinch_m_s = 0.2;  // change of the body's speed that startles wholly
+constexpr double kFullFlinch_m_s = 0.13;  // change of the body's speed that startles wholly
 constexpr double kLatency_s = 0.10, kDazedLatency_s = 0.20;
 constexpr double kDazedStrength = 0.55;
 constexpr int kDazedSteps = 1;

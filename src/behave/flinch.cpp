@@ -28,9 +28,9 @@ Vec3 Flinch::turn(Joint joint, double time_s) const {
   switch (joint) {
     case Joint::spine:
     case Joint::chest:
-      return turned(2.5 * sideways_, -3.5);
+      return turned(3.5 * sideways_, -5.2);
     case Joint::neck:
-      return turned(2.5 * sideways_, -10.0);
+      return turned(3.5 * sideways_, -10.0);
     case Joint::clavicle_l:
     case Joint::clavicle_r:
       return turned(8.0 * arm * out, 0.0);

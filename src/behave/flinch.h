@@ -8,7 +8,7 @@ namespace ukemi {
 
 struct FlinchSettings {
   Vec3 way = Vec3::Zero();  // unit, world: the way the blow travels; zero: no blow
-  double size = 1.0;        // 1: of a blow that changes the body's speed by 0.2 m/s or more
+  double size = 1.0;        // 1: of a blow that changes the body's speed by 0.13 m/s or more
   double begins_s = 0.06, rise_s = 0.14, holds_until_s = 0.32, falls_s = 0.48;
   double left_arm = 1.2, right_arm = 0.8;  // nobody's arms react alike
 };

@@ -32,6 +32,9 @@ constexpr double kFastest_s = 0.22;
 
 constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point so far beyond the feet
 constexpr double kLongestStep = 1.03;  // of the leg
+constexpr double kSettle_s = 0.08;    // a foot that lands takes its place
+constexpr double kBearing_s = 0.02;   // until a foot off the ground pushes no more
+constexpr double kSlipped = 0.10;     // m: a foot that was moved so far stands there now
 constexpr double kHeel = 1.03;         // of the leg, by the heel
 
 }  // namespace
@@ -152,6 +155,8 @@ Standing::View Standing::view_of(const Senses& senses) const {
 
 void Standing::start(const Senses& senses) {
   start_com_ = on_ground(senses.com);
+  for (const BodySide side : kSides)
+    planted_[ukemi::index(side)] = senses.pose[ukemi::index(leg(side).foot)].translation;
   if (settings_.under_way) take_over(senses);
   ask(senses, view_of(senses));
 }
@@ -439,6 +444,14 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
 // ---- what is asked of the muscles
 
 void Standing::update_slow_state(const Senses& senses, const View& view, double h) {
+  for (const BodySide side : kSides) {
+    const Vec3& ankle = senses.pose[ukemi::index(leg(side).foot)].translation;
+    Vec3& planted = planted_[ukemi::index(side)];
+    const bool settling = senses.time_s < landed_s_[ukemi::index(side)] + s(kSettle_s);
+    double& bearing = bearing_[ukemi::index(side)];
+    bearing += std::min(1.0, h / s(kBearing_s)) * ((leg(side).touches(senses) ? 1.0 : 0.0) - bearing);
+    if (settling || (ankle - planted).norm() > m(kSlipped)) planted = ankle;
+  }
   const double time_s = senses.time_s;
   const double since = time_s - std::max(landed_s_[0], landed_s_[1]);
   const double home = std::min(legs_[0].home_straightness, legs_[1].home_straightness);
@@ -446,15 +459,15 @@ void Standing::update_slow_state(const Senses& senses, const View& view, double 
   double wanted = home;
   if (phase_ == Phase::shift)
     wanted = std::min(home, 0.985);
-  else if (phase_ == Phase::swing || since < s(0.3))
+  else if (phase_ == Phase::swing || since < s(0.2))
     wanted = bent;
-  else if (since < s(1.0))
-    wanted = bent + (home - bent) * (since - s(0.3)) / s(0.7);
+  else if (since < s(0.6))
+    wanted = bent + (home - bent) * (since - s(0.2)) / s(0.4);
   straightness_ += std::min(1.0, h / s(0.05)) * (wanted - straightness_);
   heel_ += std::min(1.0, h / s(0.05)) * ((phase_ == Phase::shift ? 0.0 : 1.0) - heel_);
-  landing_offset_ *= std::exp(-h / s(0.45));
+  landing_offset_ *= std::exp(-h / s(0.22));
   const double unsteady = std::clamp(0.3 + beyond(view.outer, view.icp) / m(0.1), 0.0, 1.0) * active(time_s);
-  const double span = unsteady > arms_up_ ? 0.12 : 0.5;
+  const double span = unsteady > arms_up_ ? 0.12 : 0.28;
   arms_up_ += std::min(1.0, h / s(span)) * (unsteady - arms_up_);
 }
 
@@ -500,7 +513,7 @@ double Standing::pelvis_height(const Senses& senses, const View& view) const {
     const double rise = heel_ * std::clamp((0.5 - load) / 0.1, 0.0, 1.0);
     const double reach = (straightness_ + rise * (kHeel - straightness_)) * leg(side).length_m();
     const Vec3 hip = attitude * leg(side).hip_in_pelvis;
-    const Vec3& ankle = senses.pose[ukemi::index(leg(side).foot)].translation;
+    const Vec3 ankle = standing_ankle(senses, side);
     const double aside = (on_ground(senses.pose[0].translation + hip) - on_ground(ankle)).norm();
     const double up = std::sqrt(std::max(reach * reach - aside * aside, 0.25 * reach * reach));
     height = std::min(height, ankle.y() + up - hip.y());
@@ -556,11 +569,18 @@ Standing::Wrench Standing::wrench_of(const Senses& senses, const View& view) con
   return wrench;
 }
 
+/// Where the ankle of a standing leg belongs: a foot without load that drifts goes back to its place.
+Vec3 Standing::standing_ankle(const Senses& senses, BodySide side) const {
+  const Vec3& now = senses.pose[ukemi::index(leg(side).foot)].translation;
+  const Vec3& planted = planted_[ukemi::index(side)];
+  return leg(side).touches(senses) ? at_height(on_ground(planted), now.y()) : planted;
+}
+
 LegPosture Standing::standing_posture(const Senses& senses, const View& view, BodySide side,
                                       const Vec2& shift) const {
   const Quat attitude = attitude_of(view);
   const Vec3 pelvis = at_height(on_ground(senses.pose[0].translation) + shift, pelvis_y_);
-  const Vec3& ankle = senses.pose[ukemi::index(leg(side).foot)].translation;
+  const Vec3 ankle = standing_ankle(senses, side);
   return leg(side).reach(pelvis + attitude * leg(side).hip_in_pelvis, ankle, view.yaw, leg(side).yaw(senses));
 }
 
@@ -630,7 +650,7 @@ void Standing::ask_standing_leg(const Senses& senses, const View& view, const Wr
     const Vec3 at = joint_at(senses, joints[k]);
     const Vec3 arm = at_height(wrench.pressure[i], 0.0) - at;
     const Vec3 carried =
-        -(arm.cross(wrench.share[i] * wrench.force) + physique_.weight_torque(senses, joints[k]));
+        -(arm.cross(bearing_[i] * wrench.share[i] * wrench.force) + physique_.weight_torque(senses, joints[k]));
     const Quat relative = goal[k].conjugate() * goal[k + 1];
     const Quat later = soon[k].conjugate() * soon[k + 1];
     const Quat& parent = senses.pose[ukemi::index(chain[k])].rotation;

@@ -117,6 +117,7 @@ class Standing {
   bool in_air(const Senses& senses, const Leg& leg) const;
   Quat taken_over(const Senses& senses, Joint joint, const Quat& goal, double from_s, double until_s) const;
   void update_slow_state(const Senses& senses, const View& view, double h);
+  Vec3 standing_ankle(const Senses& senses, BodySide side) const;
 
   StandSettings settings_;
   Physique physique_;
@@ -134,6 +135,8 @@ class Standing {
   BodySide shift_to_ = BodySide::left;
   double shift_since_s_ = 0.0, ready_s_ = 0.0, calm_s_ = 0.0, hanging_s_ = 0.0;
   PerSide<double> landed_s_{-1e9, -1e9};
+  PerSide<Vec3> planted_;  // ankles where their feet came to stand
+  PerSide<double> bearing_{1.0, 1.0};  // 1: the foot is on the ground, 0: it has been off it for a while
   Vec2 landing_offset_ = Vec2::Zero();  // of the reference, fading after a landing
   int steps_in_a_row_ = 0, closings_ = 0;
   double straightness_ = 1.0;  // wanted of the legs

@@ -27,6 +27,7 @@ struct LegStance {
 };
 struct Stance {
   double pelvis_turn_deg;  // to the left
+  double pelvis_list_deg;  // the left hip lower
   double pelvis_drop;      // hips above the ankles, in leg lengths (at most 1)
   double trunk_flexion_deg, trunk_turn_deg, neck_flexion_deg, neck_turn_deg;
   ArmAngles arm_l, arm_r;
@@ -35,6 +36,7 @@ struct Stance {
 
 // Relaxed standing: hip-wide feet, knees not locked.
 constexpr Stance kStand = {0.0,
+                           0.0,
                            0.9988,
                            0.0,
                            0.0,
@@ -46,6 +48,7 @@ constexpr Stance kStand = {0.0,
                            {0.015, 0.0, 7.0}};
 // A boxer's guard, left foot forward.
 constexpr Stance kGuard = {-20.0,
+                           0.0,
                            0.93,
                            10.0,
                            -6.0,
@@ -67,8 +70,8 @@ struct Variety {
 };
 
 /// Standing at ease. The feet are behind the hips by the 3 cm (0.035 leg lengths) that people stand ahead of
-/// their ankles; a foot is 4 cm ahead, one knee and one elbow more bent, the pelvis 1 cm over one leg. A seed
-/// may exchange left and right.
+/// their ankles; a foot is 4 cm ahead, the pelvis 1 cm over one leg and lower over the other, whose knee is more
+/// bent, as is one elbow. A seed may exchange left and right.
 Stance living_stance(const Vec2& blow_from, std::uint64_t seed) {
   Variety vary(seed);
   Stance s = kStand;
@@ -77,10 +80,11 @@ Stance living_stance(const Vec2& blow_from, std::uint64_t seed) {
   const double back = vary.about(0.035, 0.008) + 0.06 * blow_from.x();
   const double aside = vary.about(0.010, 0.006) + 0.03 * blow_from.y();
   const double apart = braced ? 0.06 : 0.018;
-  s.pelvis_drop = vary.about(braced ? 0.975 : 0.9955, 0.0015);
+  s.pelvis_drop = vary.about(braced ? 0.975 : 0.994, 0.0015);
   s.leg_l = {apart + aside, -back + ahead, vary.about(8.0, 4.0)};
   s.leg_r = {apart - aside, -back - ahead, vary.about(11.0, 4.0)};
   s.pelvis_turn_deg = vary.about(-2.0, 2.5);
+  s.pelvis_list_deg = braced ? 0.0 : vary.about(1.2, 0.5);
   s.trunk_turn_deg = vary.about(2.0, 3.0);
   s.neck_turn_deg = vary.about(-3.0, 5.0);
   s.neck_flexion_deg = vary.about(2.0, 3.0);
@@ -103,7 +107,7 @@ Stance living_stance(const Vec2& blow_from, std::uint64_t seed) {
   if (!vary.seeded || braced || vary.random.uniform(0.0, 1.0) < 0.5) return s;
   std::swap(s.leg_l, s.leg_r);
   std::swap(s.arm_l, s.arm_r);
-  for (double* turn : {&s.pelvis_turn_deg, &s.trunk_turn_deg, &s.neck_turn_deg}) *turn = -*turn;
+  for (double* turn : {&s.pelvis_turn_deg, &s.pelvis_list_deg, &s.trunk_turn_deg, &s.neck_turn_deg}) *turn = -*turn;
   return s;
 }
 
@@ -187,12 +191,14 @@ Quat heading_of(const Quat& pelvis) {
 
 BodyPose body_in(const Stance& stance, const BodyPose& from) {
   Mover figure{from, from};
-  const Vec3 y = Vec3::UnitY(), z = Vec3::UnitZ();
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
   const Quat heading = heading_of(from[index(Segment::pelvis)].rotation);
-  figure.to[index(Segment::pelvis)].rotation = heading * about(y, stance.pelvis_turn_deg);
+  figure.to[index(Segment::pelvis)].rotation =
+      heading * about(y, stance.pelvis_turn_deg) * about(x, -stance.pelvis_list_deg);
   // Flexion bends the trunk forwards: about -z.
   figure.place_relative(Segment::abdomen,
-                        about(z, -0.54 * stance.trunk_flexion_deg) * about(y, 0.3 * stance.trunk_turn_deg));
+                        about(x, 0.7 * stance.pelvis_list_deg) * about(z, -0.54 * stance.trunk_flexion_deg) *
+                            about(y, 0.3 * stance.trunk_turn_deg));
   figure.place_relative(Segment::chest,
                         about(z, -0.46 * stance.trunk_flexion_deg) * about(y, 0.7 * stance.trunk_turn_deg));
   figure.place_relative(Segment::head, about(z, -stance.neck_flexion_deg) * about(y, stance.neck_turn_deg));
