@@ -4,10 +4,11 @@
 #include <string>
 
 #include "bake/baked.h"
-#include "bake/settings.h"
+#include "bake/search.h"
 #include "base/character.h"
 #include "base/files.h"
 #include "base/result.h"
+#include "prepare/settings.h"
 
 namespace ukemi {
 
@@ -16,12 +17,13 @@ namespace ukemi {
 Status check_settings(const std::string& character, const BakeSettings& settings);
 
 /// Runs the stages on a loaded character. Errors: those of the stages.
-Result<BakedClip> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics);
+Result<BakedClip> bake(const Character& character, const BakeSettings& settings, Diagnostics& diagnostics,
+                       const SearchRun& run = {});
 
 /// Bakes a loaded character and makes every file that the settings name; nothing is written, the report not
 /// made. Errors: those of the stages.
 Result<BakedFile> bake_loaded(const Character& character, const BakeSettings& settings,
-                              Diagnostics& diagnostics);
+                              Diagnostics& diagnostics, const SearchRun& run = {});
 
 /// Lays the files beside their targets and counts the time. Errors: output.
 Status add_files(BakedFile& baked, PendingFiles& files);
@@ -32,6 +34,6 @@ Status write_files(BakedFile& baked);
 /// Loads, bakes and writes every output. `character` is a file or "mannequin". Nothing is written when
 /// anything fails before the first write.
 Result<BakedFile> bake_file(const std::string& character, const BakeSettings& settings,
-                            Diagnostics& diagnostics);
+                            Diagnostics& diagnostics, const SearchRun& run = {});
 
 }  // namespace ukemi

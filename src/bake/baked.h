@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "bake/prepared.h"
 #include "clip/timeline.h"
 #include "export/export.h"
 #include "judge/clip_limits.h"
+#include "prepare/prepared.h"
 #include "rise/getting_up.h"
 #include "simulate/simulate.h"
 
@@ -32,6 +32,7 @@ struct BakedClip {
   ClipLimits human;                // of the whole timeline, against the human range
   double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
   ResampleError resample_error;
+  int trials = 1;      // of the search that found it
   double score = 0.0;  // how much like a person's the answer is, see score.h
   BakeTimings timings_s;
 };

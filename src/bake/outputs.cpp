@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "bake/settings.h"
 #include "base/errors.h"
+#include "prepare/settings.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bake/impact.h"
 #include "bake/response.h"
 #include "base/version.h"
 #include "clip/frames.h"
 #include "clip/smooth.h"
 #include "clip/start.h"
 #include "judge/jerk.h"
+#include "prepare/impact.h"
 
 namespace ukemi {
 namespace {
@@ -39,7 +39,7 @@ Json settings_json(const BakeSettings& settings, const BakedClip& outcome) {
   json["region"] = outcome.prepared.range.name;
   json["active"] = name(simulation.active);
   json["rate"] = rate_name(simulation.fixed_hz);
-  json["duration_s"] = simulation.duration_s;
+  json["duration_s"] = simulated_s(settings);
   json["fps"] = simulation.fps;
   json["seed"] = static_cast<std::uint64_t>(settings.seed);
   const bool active = simulation.active != Active::off;
@@ -176,8 +176,9 @@ Json response_json(const BakedClip& outcome) {
   json["travel_m"] = numbers(response.travel_m);
   json["turn_deg"] = response.turn_deg;
   json["delivered_n_s"] = figures.delivered_n_s;
-  json["trials"] = 1;
+  json["trials"] = outcome.trials;
   json["score"] = outcome.score;
+  json["assist_n_s"] = figures.help_n_s;
   return json;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bake/baked.h"
-#include "bake/settings.h"
 #include "base/character.h"
+#include "prepare/settings.h"
 
 namespace ukemi {
 

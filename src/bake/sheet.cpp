@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 
-#include "bake/impact.h"
 #include "base/character_path.h"
 #include "base/errors.h"
 #include "base/numbers.h"
@@ -16,6 +15,7 @@
 #include "clip/start.h"
 #include "humanoid/rotations.h"
 #include "load/load.h"
+#include "prepare/impact.h"
 
 namespace ukemi {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bake/setting_table.h"
+#include "prepare/setting_table.h"
 #include "base/character_path.h"
 #include "base/digest.h"
 #include "base/files.h"

@@ -1,5 +1,5 @@
 #include "batch/manifest.h"
-#include "bake/impact.h"
+#include "prepare/impact.h"
 #include "base/version.h"
 
 #include <fmt/format.h>

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/direction.h"
-#include "bake/setting_table.h"
+#include "prepare/direction.h"
+#include "prepare/setting_table.h"
 #include "base/digest.h"
 #include "base/errors.h"
 #include "base/file_names.h"

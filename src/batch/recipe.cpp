@@ -10,7 +10,7 @@
 #include <optional>
 #include <set>
 
-#include "bake/setting_table.h"
+#include "prepare/setting_table.h"
 #include "base/errors.h"
 #include "base/file_names.h"
 #include "base/files.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/settings.h"
+#include "prepare/settings.h"
 #include "base/result.h"
 #include "restrict/range_of_motion.h"
 

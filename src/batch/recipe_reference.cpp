@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bake/setting_table.h"
+#include "prepare/setting_table.h"
 #include "batch/recipe.h"
 
 namespace ukemi {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "bake/bake.h"
-#include "bake/impact.h"
-#include "bake/setting_table.h"
-#include "bake/settings.h"
+#include "prepare/impact.h"
+#include "prepare/setting_table.h"
+#include "prepare/settings.h"
 #include "base/segments.h"
 #include "base/version.h"
 

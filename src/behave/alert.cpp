@@ -31,10 +31,12 @@ JointGoal weakened(JointGoal goal, double share) {
 }  // namespace
 
 Alert::Alert(const ArticulatedBody& body, const RangeOfMotion& range, const MuscleStrength& strength,
-             const BodyPose& home, double gravity, const StandSettings& standing, const FallSettings& falling)
+             const BodyPose& home, double gravity, const StandSettings& standing, const FallSettings& falling,
+             bool must_stand)
     : standing_(body, home, gravity, standing),
       falling_(falling, body, range, strength),
-      tempo_(standing_.physique().tempo) {}
+      tempo_(standing_.physique().tempo),
+      must_stand_(must_stand) {}
 
 void Alert::start(const Senses& senses) {
   standing_.start(senses);
@@ -90,6 +92,7 @@ void Alert::drive(double time_s, Goals& goals) const {
         if (share > 0.0) goals.joints[j].push_back(weakened(goal, share));
     }
     goals.firm_soles = standing.firm_soles && !falling_.begun();
+    if (!falling_.begun()) goals.help_n += standing.help_n;
   }
   falling_.drive(time_s, goals);
 }

@@ -9,12 +9,14 @@ namespace ukemi {
 class Alert : public Controller {
  public:
   Alert(const ArticulatedBody& body, const RangeOfMotion& range, const MuscleStrength& strength,
-        const BodyPose& home, double gravity, const StandSettings& standing, const FallSettings& falling);
+        const BodyPose& home, double gravity, const StandSettings& standing, const FallSettings& falling,
+        bool must_stand = false);
 
   void start(const Senses& senses) override;
   void observe(const Senses& senses, double h) override;
   void drive(double time_s, Goals& goals) const override;
   bool done() const override;
+  bool hopeless() const override { return must_stand_ && standing_.lost_s(); }
   ControllerReport report() const override;
 
  private:
@@ -25,6 +27,7 @@ class Alert : public Controller {
   Standing standing_;
   Falling falling_;
   double tempo_;
+  bool must_stand_;
   double time_s_ = 0.0;
   std::optional<BodySide> swinging_;  // at the loss: this leg goes on until its foot is down
   bool over_ = false;                 // nothing of standing is left

@@ -50,6 +50,16 @@ void vary(StandSettings& stand, std::uint64_t seed) {
   stand.foot_bias_m = random.uniform(-0.06, 0.06);
 }
 
+void choose(StandSettings& stand, const Choice& choice) {
+  stand.first_foot = choice.first_foot;
+  stand.swing_s *= choice.swing;
+  stand.narrow_m *= choice.width;
+  stand.strength *= choice.tension;
+  stand.flinch.size *= choice.ride;
+  stand.gives_in_s = choice.gives_in_s;
+  stand.help = choice.help;
+}
+
 StandSettings stand_settings(const ArticulatedBody& body, const Scene& scene,
                              const BehaviourSettings& asked) {
   const bool dazed = asked.kind == Behaviour::dazed;
@@ -63,6 +73,7 @@ StandSettings stand_settings(const ArticulatedBody& body, const Scene& scene,
   if (blow) stand.flinch.way = scene.direction;
   if (asked.seed != 0) vary(stand, asked.seed);
   stand.flinch.size = std::min(1.0, momentum_of(scene) / body.mass_kg / kFullFlinch_m_s);
+  choose(stand, asked.choice);
   return stand;
 }
 
@@ -76,8 +87,9 @@ MakeController behaviour_of(const ArticulatedBody& body, const RangeOfMotion& ra
   FallSettings fall = behaviour.kind == Behaviour::dazed ? FallSettings::dazed() : FallSettings::alert();
   fall.arms_free = behaviour.arms_free;
   fall.seed = behaviour.seed;
-  return [&body, &range, &strength, &home, stand, fall, gravity = settings.gravity] {
-    return std::make_unique<Alert>(body, range, strength, home, gravity, stand, fall);
+  return [&body, &range, &strength, &home, stand, fall, gravity = settings.gravity,
+          must_stand = behaviour.must_stand] {
+    return std::make_unique<Alert>(body, range, strength, home, gravity, stand, fall, must_stand);
   };
 }
 

@@ -13,6 +13,17 @@ enum class Behaviour {
   limp    // tone alone, which fades
 };
 
+/// What a person might as well have done. The default is what he does of himself.
+struct Choice {
+  std::optional<BodySide> first_foot;
+  double swing = 1.0;                // times the time that a step takes
+  double width = 1.0;                // times how wide a step aside may be while going forward
+  double tension = 1.0;              // times the drives of the muscles, below their caps
+  double ride = 1.0;                 // times how far head and trunk go with the blow
+  std::optional<double> gives_in_s;  // lets himself fall from then on
+  Help help;                         // from outside
+};
+
 struct BehaviourSettings {
   Behaviour kind = Behaviour::alert;
   int most_steps = 6;               // of a recovery; 0: the feet stay where they are
@@ -21,6 +32,8 @@ struct BehaviourSettings {
   std::uint64_t seed = 0;           // varies latency, arms and steps; 0: none
   PerSide<bool> arms_free{true, true};
   std::optional<UnderWay> under_way;  // a start from motion
+  Choice choice;
+  bool must_stand = false;  // the run ends when balance is lost
 };
 
 /// The behaviour of a body that stands in `home` when the blow of `scene` comes. `home`, `body`, `range` and

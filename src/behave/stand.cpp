@@ -17,6 +17,7 @@ constexpr double kLift = 75.0, kLiftDamping = 14.0;         // 1/s^2, 1/s: heigh
 constexpr double kUpright = 600.0, kUprightDamping = 30.0;  // N m/rad, N m s/rad: trunk
 constexpr double kMostUpright = 150.0;                      // N m
 constexpr double kHipLean = 4.0, kMostLean = 0.7;  // rad per m of the capture point beyond planted feet, rad
+constexpr double kHelp = 1.5;                      // of what stops the capture point
 constexpr double kReaction_s = 0.06;               // from nothing to everything
 
 // Springs, N m/rad at strength 1: share of the torque at 0.35 rad.
@@ -32,9 +33,9 @@ constexpr double kFastest_s = 0.22;
 
 constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point so far beyond the feet
 constexpr double kLongestStep = 1.03;  // of the leg
-constexpr double kSettle_s = 0.08;    // a foot that lands takes its place
-constexpr double kBearing_s = 0.02;   // until a foot off the ground pushes no more
-constexpr double kSlipped = 0.10;     // m: a foot that was moved so far stands there now
+constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
+constexpr double kBearing_s = 0.02;    // until a foot off the ground pushes no more
+constexpr double kSlipped = 0.10;      // m: a foot that was moved so far stands there now
 constexpr double kHeel = 1.03;         // of the leg, by the heel
 
 }  // namespace
@@ -220,6 +221,7 @@ void Standing::drive(Goals& goals) const {
   for (int j = 0; j < kJointCount; ++j)
     goals.joints[j].insert(goals.joints[j].end(), asked_.joints[j].begin(), asked_.joints[j].end());
   goals.firm_soles = goals.firm_soles || asked_.firm_soles;
+  goals.help_n += asked_.help_n;
 }
 
 // ---- the state machine
@@ -431,7 +433,9 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
         return c.with == SegmentContact::With::floor && c.segment != Segment::foot_l &&
                c.segment != Segment::foot_r;
       });
-  const char* why = beyond(view.outer, view.icp) > reach   ? "icp"
+  const bool gives_in = settings_.gives_in_s && senses.time_s >= s(*settings_.gives_in_s);
+  const char* why = gives_in                               ? "gives in"
+                    : beyond(view.outer, view.icp) > reach ? "icp"
                     : senses.com.y() < 0.72 * home_height_ ? "low"
                     : tilt < 0.5                           ? "tilt"
                     : touches                              ? "touch"
@@ -649,8 +653,8 @@ void Standing::ask_standing_leg(const Senses& senses, const View& view, const Wr
   for (int k = 0; k < 3; ++k) {
     const Vec3 at = joint_at(senses, joints[k]);
     const Vec3 arm = at_height(wrench.pressure[i], 0.0) - at;
-    const Vec3 carried =
-        -(arm.cross(bearing_[i] * wrench.share[i] * wrench.force) + physique_.weight_torque(senses, joints[k]));
+    const Vec3 carried = -(arm.cross(bearing_[i] * wrench.share[i] * wrench.force) +
+                           physique_.weight_torque(senses, joints[k]));
     const Quat relative = goal[k].conjugate() * goal[k + 1];
     const Quat later = soon[k].conjugate() * soon[k + 1];
     const Quat& parent = senses.pose[ukemi::index(chain[k])].rotation;
@@ -699,8 +703,20 @@ void Standing::ask_upper_body(const Senses& senses) {
   }
 }
 
+/// What takes the capture point back to the feet, or what pushes a body over that would stand.
+Vec3 Standing::help_of(const View& view) const {
+  const Help& help = settings_.help;
+  if (help.most_n <= 0.0 || lost_s_) return Vec3::Zero();
+  if (help.down) return at_height(help.most_n * on_ground(settings_.flinch.way).normalized(), 0.0);
+  const Vec2 back = into(view.inner, view.icp) - view.icp;
+  Vec2 force = kHelp * physique_.mass_kg * view.rate * view.rate * back;
+  if (force.norm() > help.most_n) force *= help.most_n / force.norm();
+  return at_height(force, 0.0);
+}
+
 void Standing::ask(const Senses& senses, const View& view) {
   asked_.clear();
+  asked_.help_n = help_of(view);
   asked_.firm_soles = true;
   pelvis_y_ = pelvis_height(senses, view);
   const Wrench wrench = wrench_of(senses, view);

@@ -22,6 +22,12 @@ struct UnderWay {
   PerSide<std::optional<double>> lands_in_s;
 };
 
+/// A force from outside on the pelvis that helps towards an outcome.
+struct Help {
+  double most_n = 0.0;  // 0: none
+  bool down = false;    // pushes the body over, the way of the blow; else holds it up
+};
+
 struct StandSettings {
   std::optional<UnderWay> under_way;  // nothing: the body stands in its home pose
   int most_steps = 6;                 // of a recovery; 0: the feet stay where they are
@@ -33,6 +39,8 @@ struct StandSettings {
   double narrow_m = 0.40;             // a step aside while going forward is at most so wide
   double strength = 1.0;              // of the drives; a dazed body has less
   std::optional<BodySide> first_foot;
+  std::optional<double> gives_in_s;  // lets himself fall from then on
+  Help help;
   PerSide<bool> arms_free{true, true};
   PerSide<double> arm_size{1.1, 0.9};  // of catching arms
   FlinchSettings flinch;
@@ -109,6 +117,7 @@ class Standing {
   void ask_standing_leg(const Senses& senses, const View& view, const Wrench& wrench, BodySide side);
   void ask_swinging_leg(const Senses& senses);
   void ask_upper_body(const Senses& senses);
+  Vec3 help_of(const View& view) const;
   void ask_joint(Joint joint, const Quat& goal, const Vec3& velocity, const Vec3& feed_forward,
                  double stiffness, double damping_s);
   double active(double time_s) const;
@@ -135,8 +144,8 @@ class Standing {
   BodySide shift_to_ = BodySide::left;
   double shift_since_s_ = 0.0, ready_s_ = 0.0, calm_s_ = 0.0, hanging_s_ = 0.0;
   PerSide<double> landed_s_{-1e9, -1e9};
-  PerSide<Vec3> planted_;  // ankles where their feet came to stand
-  PerSide<double> bearing_{1.0, 1.0};  // 1: the foot is on the ground, 0: it has been off it for a while
+  PerSide<Vec3> planted_;               // ankles where their feet came to stand
+  PerSide<double> bearing_{1.0, 1.0};   // 1: the foot is on the ground, 0: it has been off it for a while
   Vec2 landing_offset_ = Vec2::Zero();  // of the reference, fading after a landing
   int steps_in_a_row_ = 0, closings_ = 0;
   double straightness_ = 1.0;  // wanted of the legs

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
+#include <thread>
 
 #include "bake/bake.h"
 #include "bake/report.h"
@@ -8,7 +10,9 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/picture_options.h"
+#include "cli/progress_line.h"
 #include "cli/settings_options.h"
+#include "cli/stop_signals.h"
 
 namespace ukemi {
 namespace {
@@ -46,6 +50,18 @@ Status check(const BakeRequest& request) {
   return Done{};
 }
 
+/// Trials run on idle processors; Ctrl-C keeps the best so far.
+Result<BakedFile> search_and_bake(const BakeRequest& request, Diagnostics& diagnostics) {
+  if (most_trials(request.settings) == 1) return bake_file(request.character, request.settings, diagnostics);
+  const StopSignals signals;
+  const ProgressLine line("trial", !request.quiet && !request.json);
+  SearchRun run;
+  run.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  run.after_each = [&line](int done, int most) { line.show(done, most); };
+  run.stopped = [] { return StopSignals::stopped_by() != 0; };
+  return bake_file(request.character, request.settings, diagnostics, run);
+}
+
 std::string summary(const BakeRequest& request, const BakedFile& baked) {
   const BakedClip& outcome = baked.outcome;
   const LimitFigures& limits = outcome.limits;
@@ -68,6 +84,8 @@ std::string summary(const BakeRequest& request, const BakedFile& baked) {
         "degrees{}\n",
         outcome.human.over_1deg, outcome.human.samples, outcome.human.excess_max_deg,
         outcome.human.worst_joint ? fmt::format(" ({})", name(*outcome.human.worst_joint)) : "");
+  if (outcome.trials > 1) text += fmt::format("{} trials; score {:.2f}\n", outcome.trials, outcome.score);
+  if (figures.help_n_s > 0.0) text += fmt::format("helped from outside: {:.1f} N s\n", figures.help_n_s);
   for (const auto& output : request.settings.outputs) text += "wrote " + output.string() + "\n";
   if (!request.settings.sheet.empty()) text += "wrote " + request.settings.sheet.string() + "\n";
   if (!request.settings.preview.empty()) text += "wrote " + request.settings.preview.string() + "\n";
@@ -88,7 +106,7 @@ int bake_command(const Arguments& arguments) {
   if (const Status status = check(request); !status) return print_error(status.error());
 
   Diagnostics diagnostics;
-  const auto baked = bake_file(request.character, request.settings, diagnostics);
+  const auto baked = search_and_bake(request, diagnostics);
   if (!request.quiet) print_warnings(diagnostics);
   if (!baked) return print_error(baked.error());
   if (request.quiet) return 0;

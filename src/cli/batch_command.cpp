@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <csignal>
 #include <string>
 #include <thread>
 
@@ -16,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
+#include "cli/stop_signals.h"
 #include "review/review.h"
 
 namespace ukemi {
@@ -111,25 +111,6 @@ Status check(const BatchRequest& request) {
   return Done{};
 }
 
-volatile std::sig_atomic_t g_stopped_by = 0;
-void stop(int signal_number) { g_stopped_by = signal_number; }
-
-/// While it lives, Ctrl-C and the like are noted; a second one ends the program at once.
-class StopSignals {
- public:
-  StopSignals() {
-    struct sigaction action {};
-    action.sa_handler = stop;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaction(number, &action, nullptr);
-  }
-  ~StopSignals() {
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
-  }
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-};
-
 std::string duration_text(double seconds) {
   if (seconds < 90.0) return fmt::format("{:.0f} s", std::max(seconds, 1.0));
   if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
@@ -147,7 +128,6 @@ std::string_view plan_word(Plan plan) {
   }
 }
 
-/// What would be done, and how long it would take.
 /// Recipes from before bodies lived meant falls where they said nothing.
 void note_living(const BatchPlan& plan) {
   const auto unsaid =
@@ -164,6 +144,7 @@ void note_living(const BatchPlan& plan) {
       stderr);
 }
 
+/// What would be done, and how long it would take.
 Result<std::string> dry_run_text(const BatchPlan& plan, const BatchSettings& settings) {
   std::string text;
   for (std::size_t i = 0; i < plan.reactions.size(); ++i) {
@@ -216,7 +197,7 @@ int report_stop(const BatchRequest& request, const BatchResult& result) {
                          result.baked + result.kept, resume)
                  .c_str(),
              stderr);
-  return 128 + g_stopped_by;
+  return 128 + StopSignals::stopped_by();
 }
 
 /// The page over what was baked, where it is not there yet; a shard has none.
@@ -239,7 +220,7 @@ int run_planned(const BatchRequest& request, const BatchPlan& plan) {
         plan, request.settings, [&view](const BatchProgress& progress) { view.show(progress); },
         [&view] {
           view.tick();
-          return g_stopped_by != 0;
+          return StopSignals::stopped_by() != 0;
         });
   }();
   if (!result) return print_error(result.error());

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -14,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
+#include "cli/progress_line.h"
 #include "cli/settings_options.h"
 #include "load/load.h"
 #include "study/compare.h"
@@ -83,21 +83,6 @@ Status check(const CompareRequest& request) {
   return request.folder.empty() ? Status(Done{}) : check_folder(request.folder);
 }
 
-/// A line on stderr that is written over, and taken away at the end.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) != 0) {}
-  ~ProgressLine() {
-    if (shown_) std::fputs("\r\033[K", stderr);
-  }
-  void operator()(int done, int total) const {
-    if (shown_) std::fputs(fmt::format("\rrun {} of {}", done, total).c_str(), stderr);
-  }
-
- private:
-  bool shown_;
-};
-
 /// A comparison and what is to be written of it.
 struct Compared {
   Comparison comparison;
@@ -109,9 +94,9 @@ Result<Compared> run_comparison(const CompareRequest& request, Diagnostics& diag
   if (!path) return path.error();
   const auto loaded = load_character(*path, LoadOptions{}, diagnostics);
   if (!loaded) return loaded.error();
-  const ProgressLine line(!request.quiet && !request.json);
+  const ProgressLine line("run", !request.quiet && !request.json);
   auto comparison = compare(request.character, *loaded, request.settings, diagnostics,
-                            [&line](int done, int total) { line(done, total); });
+                            [&line](int done, int total) { line.show(done, total); });
   if (!comparison) return comparison.error();
   Compared compared{std::move(*comparison), {}};
   if (request.folder.empty()) return compared;

@@ -1,14 +1,13 @@
 #include "review/review.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <string>
 
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/options.h"
+#include "cli/progress_line.h"
 
 namespace ukemi {
 namespace {
@@ -21,11 +20,6 @@ constexpr const char* kAboutThePage =
 
 std::string counted(int count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
-
-/// A line that replaces itself, where a person looks on.
-void print_progress(int done, int total) {
-  std::fputs(fmt::format("\rreview: {} of {}{}", done, total, done == total ? "\n" : "").c_str(), stderr);
 }
 
 }  // namespace
@@ -41,10 +35,11 @@ int review_command(const Arguments& arguments) {
   if (const auto status = status_at_once(options, arguments, kAboutThePage)) return *status;
 
   Diagnostics diagnostics;
-  const bool watched = !quiet && isatty(STDERR_FILENO) == 1;
-  const auto review = write_review(folder, settings, diagnostics, [watched](int done, int total) {
-    if (watched) print_progress(done, total);
-  });
+  const auto review = [&] {
+    const ProgressLine line("clip", !quiet);
+    return write_review(folder, settings, diagnostics,
+                        [&line](int done, int total) { line.show(done, total); });
+  }();
   print_warnings(diagnostics);
   if (!review) return print_error(review.error());
   if (quiet) return 0;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "bake/setting_table.h"
+#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {

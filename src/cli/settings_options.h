@@ -1,9 +1,9 @@
 // The settings of a bake as options of a command.
 #pragma once
 
-#include "bake/settings.h"
 #include "cli/options.h"
 #include "humanoid/humanoid.h"
+#include "prepare/settings.h"
 
 namespace ukemi {
 

@@ -70,8 +70,8 @@ struct Variety {
 };
 
 /// Standing at ease. The feet are behind the hips by the 3 cm (0.035 leg lengths) that people stand ahead of
-/// their ankles; a foot is 4 cm ahead, the pelvis 1 cm over one leg and lower over the other, whose knee is more
-/// bent, as is one elbow. A seed may exchange left and right.
+/// their ankles; a foot is 4 cm ahead, the pelvis 1 cm over one leg and lower over the other, whose knee is
+/// more bent, as is one elbow. A seed may exchange left and right.
 Stance living_stance(const Vec2& blow_from, std::uint64_t seed) {
   Variety vary(seed);
   Stance s = kStand;
@@ -107,7 +107,8 @@ Stance living_stance(const Vec2& blow_from, std::uint64_t seed) {
   if (!vary.seeded || braced || vary.random.uniform(0.0, 1.0) < 0.5) return s;
   std::swap(s.leg_l, s.leg_r);
   std::swap(s.arm_l, s.arm_r);
-  for (double* turn : {&s.pelvis_turn_deg, &s.pelvis_list_deg, &s.trunk_turn_deg, &s.neck_turn_deg}) *turn = -*turn;
+  for (double* turn : {&s.pelvis_turn_deg, &s.pelvis_list_deg, &s.trunk_turn_deg, &s.neck_turn_deg})
+    *turn = -*turn;
   return s;
 }
 
@@ -196,9 +197,9 @@ BodyPose body_in(const Stance& stance, const BodyPose& from) {
   figure.to[index(Segment::pelvis)].rotation =
       heading * about(y, stance.pelvis_turn_deg) * about(x, -stance.pelvis_list_deg);
   // Flexion bends the trunk forwards: about -z.
-  figure.place_relative(Segment::abdomen,
-                        about(x, 0.7 * stance.pelvis_list_deg) * about(z, -0.54 * stance.trunk_flexion_deg) *
-                            about(y, 0.3 * stance.trunk_turn_deg));
+  figure.place_relative(Segment::abdomen, about(x, 0.7 * stance.pelvis_list_deg) *
+                                              about(z, -0.54 * stance.trunk_flexion_deg) *
+                                              about(y, 0.3 * stance.trunk_turn_deg));
   figure.place_relative(Segment::chest,
                         about(z, -0.46 * stance.trunk_flexion_deg) * about(y, 0.7 * stance.trunk_turn_deg));
   figure.place_relative(Segment::head, about(z, -stance.neck_flexion_deg) * about(y, stance.neck_turn_deg));

@@ -88,12 +88,15 @@ void Physics::add_forces(double time_s, double h, const Goals& goals) {
     if (damping > 0.0) apply_damping(model_, joint, damping);
   }
   scene_.apply(time_s);
+  if (!goals.help_n.isZero())
+    dBodyAddForce(model_.bodies().front().id, goals.help_n.x(), goals.help_n.y(), goals.help_n.z());
 }
 
 void Physics::step(double time_s, double h, const Goals& goals, const Contacts& contacts) {
   constexpr int kTries = 3;
   set_erp(h);
   firm_soles_ = goals.firm_soles;
+  help_n_ = goals.help_n;
   all_rows_.assign(model_.joints().size(), false);
   for (int attempt = 0; attempt < kTries; ++attempt) {
     add_forces(time_s, h, goals);
@@ -127,6 +130,8 @@ void Physics::restore() {
 
 double Physics::accept(double time_s, double h) {
   double work = scene_.work(time_s, h);
+  help_n_s_ += h * help_n_.norm();
+  work += h * std::max(0.0, help_n_.dot(vec3(dBodyGetLinearVel(model_.bodies().front().id))));
   for (const Tone& tone : tone_) work += tone.work(h);
   muscle_share_ = 0.0;
   for (Muscle& muscle : muscles_) {

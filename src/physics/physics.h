@@ -82,6 +82,8 @@ class Physics {
   /// Largest share of its strength that any joint's muscle gave in the last accepted step.
   double muscle_share() const { return muscle_share_; }
   double muscle_work_j() const { return muscle_work_; }
+  /// Given from outside so far, see Goals::help_n: sum of amounts.
+  double help_n_s() const { return help_n_s_; }
 
  private:
   void set_erp(double h);
@@ -102,8 +104,9 @@ class Physics {
   std::vector<bool> all_rows_;
   std::vector<RigidState> saved_;
   double erp_h_ = 0.0;
-  bool firm_soles_ = false;  // asked for in the last step
-  double muscle_share_ = 0.0, muscle_work_ = 0.0;
+  bool firm_soles_ = false;     // asked for in the last step
+  Vec3 help_n_ = Vec3::Zero();  // asked for in the last step
+  double muscle_share_ = 0.0, muscle_work_ = 0.0, help_n_s_ = 0.0;
 };
 
 }  // namespace ukemi

@@ -22,11 +22,11 @@ Error input(std::string_view part, std::string what, std::string fix) {
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
 std::optional<Error> fault_of(const SimulationSettings& s) {
-  if (!(s.duration_s > 0.0)) return usage_error("the duration must be above 0 s", "give --duration");
+  if (!(duration_of(s) > 0.0)) return usage_error("the duration must be above 0 s", "give --duration");
   if (!(s.fps > 0.0)) return usage_error("the frame rate must be above 0", "give --fps");
-  if (!(s.duration_s * s.fps <= kMaxFrames))
-    return usage_error(fmt::format("{:g} s at {:g} frames per second are more than {:g} frames", s.duration_s,
-                                   s.fps, kMaxFrames),
+  if (!(duration_of(s) * s.fps <= kMaxFrames))
+    return usage_error(fmt::format("{:g} s at {:g} frames per second are more than {:g} frames",
+                                   duration_of(s), s.fps, kMaxFrames),
                        "give a shorter --duration or a lower --fps");
   if (!within(s.fixed_hz, 0.0, kMaxRate_hz))
     return usage_error(fmt::format("the rate must be above 0 and at most {:g} Hz", kMaxRate_hz),

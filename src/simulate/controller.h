@@ -67,6 +67,8 @@ class Controller {
   virtual void drive(double time_s, Goals& goals) const = 0;
   /// Rest ends the run only then.
   virtual bool done() const { return true; }
+  /// Nothing that follows is of interest: the run ends at once.
+  virtual bool hopeless() const { return false; }
   virtual ControllerReport report() const { return {}; }
 };
 

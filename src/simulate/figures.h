@@ -32,6 +32,8 @@ class Recorder {
     figures_.muscle_work_j = work_j;
   }
 
+  void help(double n_s) { figures_.help_n_s = n_s; }
+
   /// Senses at the start and after an accepted step.
   void touches(const Senses& senses);
   /// What the blow has given so far, N s.

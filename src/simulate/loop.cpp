@@ -147,6 +147,7 @@ void Simulation::accept(int ticks, const StepResult& step, double projected, Con
   recorder_.excess_of_step(step.excesses, projected);
   recorder_.step(time_s(), h, contacts_, physics_.scene().prop_energy(), work, step.separation_m);
   recorder_.muscles(physics_.muscle_share(), physics_.muscle_work_j());
+  recorder_.help(physics_.help_n_s());
   watch_energy();
   step_length_.observe(physics_.worst_joint_speed());
   observe(h);
@@ -169,7 +170,7 @@ void Simulation::run(Diagnostics& diagnostics) {
   const SceneProps& scene = physics_.scene();
   recorder_.momentum(scene.momentum_n_s());
   contacts_ = physics_.find_contacts();
-  frames_.emplace(settings_.fps, settings_.duration_s, stepping_.tick_s, scene.props(), state());
+  frames_.emplace(settings_.fps, duration_of(settings_), stepping_.tick_s, scene.props(), state());
   frames_->trajectory.impact_point = scene.impact_point();
   if (scene.is_blow()) frames_->trajectory.impact_direction = direction_;
   most_energy_j_ += kBlowShare * std::abs(scene.prop_energy());
@@ -185,12 +186,13 @@ void Simulation::run(Diagnostics& diagnostics) {
 }
 
 bool Simulation::ended() const {
+  if (controller_ && controller_->hopeless()) return true;
   const bool at_rest = rest_.since_s() && (!controller_ || controller_->done());
   return at_rest && settings_.stop_at_rest && stepping_.adaptive;
 }
 
 void Simulation::run_to_end() {
-  const long end = std::lround(std::ceil(settings_.duration_s / stepping_.tick_s - 1e-6));
+  const long end = std::lround(std::ceil(duration_of(settings_) / stepping_.tick_s - 1e-6));
   while (ticks_ < end && !ended()) advance(step_length_.next(ticks_));
   frames_->hold();
 }
@@ -206,6 +208,7 @@ SimulationResult Simulation::result() {
 
 }  // namespace
 
+double duration_of(const SimulationSettings& settings) { return settings.duration_s.value_or(3.0); }
 double tone_of(const SimulationSettings& settings) {
   return settings.tone.value_or(settings.fixed_hz > 0.0 ? 0.0 : 0.3);
 }

@@ -25,17 +25,18 @@ struct SimulationSettings {
   /// 0 limp .. 1: share of a man's joint torques that hold the start pose at first; default 0.3 with adaptive
   /// steps, 0 with fixed ones.
   std::optional<double> tone;
-  double tone_fade_s = 0.6;       // until it has gone
-  std::optional<double> damping;  // joint damping, 1/s; default 10 with adaptive steps, 0 with fixed ones
-  double fixed_hz = 0.0;          // 0: adaptive steps; else the frozen yardstick at that rate
-  double duration_s = 3.0;        // of the simulated part
-  double fps = 60.0;              // of the trajectory
-  bool stop_at_rest = true;       // hold the pose once everything rests
+  double tone_fade_s = 0.6;          // until it has gone
+  std::optional<double> damping;     // joint damping, 1/s; default 10 with adaptive steps, 0 with fixed ones
+  double fixed_hz = 0.0;             // 0: adaptive steps; else the frozen yardstick at that rate
+  std::optional<double> duration_s;  // of the simulated part; default 3
+  double fps = 60.0;                 // of the trajectory
+  bool stop_at_rest = true;          // hold the pose once everything rests
   bool self_collision = true;
   double gravity = 9.81;  // m/s^2, downwards
 };
 
-/// The tone and damping in force.
+/// The duration, tone and damping in force.
+double duration_of(const SimulationSettings& settings);
 double tone_of(const SimulationSettings& settings);
 double damping_of(const SimulationSettings& settings);
 
@@ -69,6 +70,7 @@ struct SimulationFigures {
   double delivered_n_s = 0.0;     // of it, what the body received
   double muscle_share_max = 0.0;  // of a joint's strength that a behaviour's muscles gave
   double muscle_work_j = 0.0;     // of those muscles, either way
+  double help_n_s = 0.0;          // given from outside, see Goals::help_n
   std::optional<double> first_ground_contact_s;     // of anything that did not stand on it, feet apart
   PerSegment<std::optional<TouchDown>> touch_down;  // of what did not stand on the floor at the start
   double angular_momentum_mean_kg_m2_s = 0.0;       // about the centre of mass, mean over 1 s after the blow

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/impact.h"
-#include "bake/prepared.h"
+#include "prepare/impact.h"
+#include "prepare/prepared.h"
 #include "base/character.h"
 #include "base/result.h"
 #include "simulate/simulate.h"

@@ -64,7 +64,7 @@ Result<Shown> run_shown(const Character& character, const Comparison& comparison
   if (!trial) return trial.error();
   Shown shown{method.name, std::move(*trial), {}, {}};
   Trajectory& trajectory = shown.trial.result.trajectory;
-  hold_last_frame(trajectory, method.simulation.duration_s);
+  hold_last_frame(trajectory, duration_of(method.simulation));
   const Prepared& prepared = comparison.prepared;
   ResampleError error;
   shown.clip =

@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "bake/impact.h"
-#include "bake/setting_table.h"
+#include "prepare/impact.h"
+#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/bake.h"
-#include "bake/impact.h"
-#include "bake/setting_table.h"
+#include "prepare/impact.h"
+#include "prepare/setting_table.h"
 #include "base/version.h"
 
 namespace ukemi {

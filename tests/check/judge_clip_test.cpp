@@ -11,7 +11,7 @@
 #include <set>
 
 #include "bake/bake.h"
-#include "bake/direction.h"
+#include "prepare/direction.h"
 <<<<<<< HEAD
 #include "base/character_path.h"
 =======

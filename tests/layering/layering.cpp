@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 // In the order of the pipeline.
 constexpr std::string_view kRooms[] = {
     "base",   "load",   "bones", "humanoid", "restrict", "body",  "physics", "simulate", "behave", "rise",
-    "export", "render", "clip",  "judge",    "bake",     "check", "study",   "batch",    "review", "cli"};
+    "export", "render", "clip",  "judge",    "prepare",  "bake",  "check",   "study",    "batch",  "review", "cli"};
 
 // Rooms that never include each other.
 const std::vector<std::vector<std::string_view>> kApart = {{"export", "render"},
@@ -36,7 +36,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"unsupported/Eigen/", {}},
       {"fmt/", {}},
       {"nlohmann/", {"load", "bones", "export", "clip", "bake", "check", "study", "batch", "review"}},
-      {"toml++/", {"bones", "restrict", "body", "bake", "batch"}},
+      {"toml++/", {"bones", "restrict", "body", "prepare", "batch"}},
       {"assimp/", {"load"}},
       {"draco/", {"load"}},
       {"meshoptimizer", {"load"}},

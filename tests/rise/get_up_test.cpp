@@ -8,7 +8,7 @@
 #include <set>
 
 #include "bake/bake.h"
-#include "bake/direction.h"
+#include "prepare/direction.h"
 #include "base/character_path.h"
 #include "body/ground.h"
 #include "load/load.h"

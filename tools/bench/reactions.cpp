@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "bake/setting_table.h"
 #include "base/character_path.h"
 #include "load/load.h"
+#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
@@ -56,6 +56,19 @@ ReactionRow run(const Character& character, BakeSettings settings, const std::st
   scene.impulse_n_s = n_s * size;
   const double before = cpu();
   auto result = simulate(simulation_input(*prepared, scene, settings.simulation), diagnostics);
+  for (const Choice& choice : choices_for(settings)) {
+    if (!settings.outcome) break;
+    BehaviourSettings behaviour = prepared->behaviour;
+    behaviour.choice = choice;
+    result = simulate(simulation_input(*prepared, scene, settings.simulation, behaviour), diagnostics);
+    if (!result || result->behaviour.fall_begins_s.has_value() == (settings.outcome == Wanted::fall)) {
+      if (std::getenv("TRACE") != nullptr)
+        fmt::print("choice: first {} swing {:.2f} width {:.2f} tension {:.2f} ride {:.2f}\n",
+                   choice.first_foot ? static_cast<int>(*choice.first_foot) : -1, choice.swing, choice.width,
+                   choice.tension, choice.ride);
+      break;
+    }
+  }
   row.cpu_s = cpu() - before;
   if (!result) {
     fmt::print("{}\n", result.error().message());
@@ -81,7 +94,7 @@ ReactionRow run(const Character& character, BakeSettings settings, const std::st
   row.separation = result->figures.joint_separation_max_m;
   row.rejected = result->figures.rejected_steps;
   row.rested = result->figures.rest_time_s.has_value();
-  row.rest_s = result->figures.rest_time_s.value_or(settings.simulation.duration_s);
+  row.rest_s = result->figures.rest_time_s.value_or(duration_of(settings.simulation));
   return row;
 }
 

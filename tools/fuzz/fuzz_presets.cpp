@@ -1,7 +1,7 @@
 // Impact presets as TOML.
 #include <cmath>
 
-#include "bake/impact.h"
+#include "prepare/impact.h"
 #include "fuzz/checks.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,4 +1,4 @@
-#include "bake/setting_table.h"
+#include "prepare/setting_table.h"
 
 #include <gtest/gtest.h>
 

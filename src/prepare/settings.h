@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "bake/direction.h"
 #include "base/segments.h"
 #include "behave/behaviour.h"
 #include "body/body.h"
@@ -14,12 +13,18 @@
 #include "clip/root_motion.h"
 #include "export/export.h"
 #include "humanoid/humanoid.h"
+#include "prepare/direction.h"
 #include "render/render.h"
 #include "restrict/range_of_motion.h"
 #include "rise/get_up.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {
+
+/// What a director wants to become of the body.
+enum class Wanted { stand, fall };
+/// Arms that hold something: they neither swing nor catch the body.
+enum class HoldingArms { none, left, right, both };
 
 /// Everything that one bake may be told. Defaults are the program's.
 struct BakeSettings {
@@ -45,9 +50,13 @@ struct BakeSettings {
   // behaviour
   std::optional<Behaviour> behaviour;  // unless given: alert, limp with fixed steps
   double most_steps = 6;               // of a recovery
-  double muscle = 1.0;                 // strength, of a healthy adult's
-  std::optional<double> latency_s;     // unless given: the behaviour's
-  std::optional<double> get_up_s;      // gets up after lying so long; unless given: stays down
+  std::optional<Wanted> outcome;       // reached by search; unless given: what physics decides
+  std::optional<double> search;        // trials at most; unless given: 5 with an outcome, else 1
+  bool assist = false;                 // a force from outside may help towards the outcome
+  HoldingArms arms = HoldingArms::none;
+  double muscle = 1.0;              // strength, of a healthy adult's
+  std::optional<double> latency_s;  // unless given: the behaviour's
+  std::optional<double> get_up_s;   // gets up after lying so long; unless given: stays down
   GetUpStyle get_up_style = GetUpStyle::plain;
   double seed = 0;  // varies stance, latency, arms and steps; 0: the mean of all
   // method
@@ -80,6 +89,9 @@ struct BakeSettings {
 
 /// The name a bake's clip gets: that of the settings, else SEGMENT_FROM.
 std::string reaction_name(const BakeSettings& settings);
+
+/// How long is simulated, s: unless told 3 limp, 4 alive, 12 for who gets up, so that he comes to rest first.
+double simulated_s(const BakeSettings& settings);
 
 /// The behaviour in force.
 BehaviourSettings behaviour_settings(const BakeSettings& settings);

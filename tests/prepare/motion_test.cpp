@@ -1,4 +1,4 @@
-#include "bake/motion.h"
+#include "prepare/motion.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "bake/bake.h"
-#include "bake/start.h"
+#include "prepare/start.h"
 #include "base/files.h"
 #include "clip/names.h"
 #include "clip/start.h"

@@ -1,12 +1,12 @@
-#include "bake/prepared.h"
+#include "prepare/prepared.h"
 
 #include <fmt/format.h>
 
-#include "bake/impact.h"
-#include "bake/start.h"
 #include "base/errors.h"
 #include "behave/ground.h"
 #include "humanoid/rotations.h"
+#include "prepare/impact.h"
+#include "prepare/start.h"
 
 namespace ukemi {
 namespace {

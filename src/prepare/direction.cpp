@@ -1,4 +1,4 @@
-#include "bake/direction.h"
+#include "prepare/direction.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "bake/impact.h"
+#include "prepare/impact.h"
 
 #include <gtest/gtest.h>
 
-#include "bake/settings.h"
+#include "prepare/settings.h"
 #include "base/parse_segment.h"
 
 namespace ukemi {

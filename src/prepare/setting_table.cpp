@@ -1,4 +1,4 @@
-#include "bake/setting_table.h"
+#include "prepare/setting_table.h"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,13 @@
 #include <type_traits>
 #include <utility>
 
-#include "bake/impact.h"
-#include "bake/settings.h"
 #include "base/errors.h"
 #include "base/nearest.h"
 #include "base/parse_segment.h"
 #include "base/segments.h"
 #include "bones/map_file.h"
+#include "prepare/impact.h"
+#include "prepare/settings.h"
 
 namespace ukemi {
 namespace {
@@ -368,6 +368,29 @@ Settings behaviour_settings_table() {
           "steps", "N", Range{0.0, 20.0},
           "recovery steps at most; 0: the feet stay planted, and the stand pose leans into the blow",
           [](auto& s) -> auto& { return s.most_steps; }),
+      choice<S, std::optional<Wanted>>(
+          "outcome", {{"auto", std::nullopt}, {"stand", Wanted::stand}, {"fall", Wanted::fall}},
+          "stand, fall: looked for among what a person might do (--search); auto: what becomes of the body",
+          [](auto& s) -> auto& { return s.outcome; }),
+      with_unset(
+          number<S>(
+              "search", "N", Range{1.0, 100.0},
+              "trials at most, of other feet, step times and tensions; the one most like a person is kept",
+              [](auto& s) -> auto& { return s.search; }),
+          "1, with --outcome 5"),
+      on_off<S>(
+          "assist",
+          "where no trial reaches the outcome, a force on the pelvis helps, as small as will do; the report "
+          "says how much",
+          [](auto& s) -> auto& { return s.assist; }),
+      choice<S, HoldingArms>(
+          "arms",
+          {{"none", HoldingArms::none},
+           {"left", HoldingArms::left},
+           {"right", HoldingArms::right},
+           {"both", HoldingArms::both}},
+          "arms that hold something: they neither swing nor catch the body",
+          [](auto& s) -> auto& { return s.arms; }),
       number<S>(
           "muscle", "TIMES", Range{0.1, 10.0}, "muscle strength, of a healthy adult's",
           [](auto& s) -> auto& { return s.muscle; }),
@@ -462,10 +485,10 @@ Settings method_settings() {
 Settings clip_settings() {
   using S = BakeSettings;
   return {
-      number<S>(
-          "duration", "S", Range{0.0, 60.0, true},
-          "length at most, until he gets up (with --get-up 12 unless given)",
-          [](auto& s) -> auto& { return s.simulation.duration_s; }),
+      with_unset(number<S>(
+                     "duration", "S", Range{0.0, 60.0, true}, "length at most, until he gets up",
+                     [](auto& s) -> auto& { return s.simulation.duration_s; }),
+                 "4, limp 3, with --get-up 12"),
       on_off<S>(
           "until-rest", "end the clip once everything rests", [](auto& s) -> auto& { return s.until_rest; },
           "keep the still tail, up to --duration"),

@@ -1,4 +1,4 @@
-#include "bake/impact.h"
+#include "prepare/impact.h"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "bake/settings.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/nearest.h"
 #include "base/numbers.h"
+#include "prepare/settings.h"
 
 namespace ukemi {
 namespace {

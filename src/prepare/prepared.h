@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "bake/settings.h"
 #include "base/character.h"
 #include "base/result.h"
 #include "behave/behaviour.h"
@@ -14,6 +13,7 @@
 #include "clip/start.h"
 #include "clip/timeline.h"
 #include "humanoid/humanoid.h"
+#include "prepare/settings.h"
 #include "restrict/active.h"
 #include "restrict/range_of_motion.h"
 #include "simulate/simulate.h"

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/direction.h"
 #include "base/math.h"
 #include "base/result.h"
+#include "prepare/direction.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {

@@ -1,4 +1,4 @@
-#include "bake/start.h"
+#include "prepare/start.h"
 
 #include <fmt/format.h>
 
@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "bake/motion.h"
-#include "bake/settings.h"
 #include "base/errors.h"
 #include "base/nearest.h"
 #include "clip/ground_motion.h"
 #include "clip/names.h"
 #include "clip/start.h"
+#include "prepare/motion.h"
+#include "prepare/settings.h"
 
 namespace ukemi {
 namespace {

@@ -1,4 +1,4 @@
-#include "bake/motion.h"
+#include "prepare/motion.h"
 
 #include <fmt/format.h>
 

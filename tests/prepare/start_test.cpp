@@ -1,4 +1,4 @@
-#include "bake/start.h"
+#include "prepare/start.h"
 
 #include <gtest/gtest.h>
 

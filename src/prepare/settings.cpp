@@ -1,4 +1,4 @@
-#include "bake/settings.h"
+#include "prepare/settings.h"
 
 #include <algorithm>
 
@@ -11,6 +11,12 @@ std::string reaction_name(const BakeSettings& settings) {
   return std::string(name(settings.hit)) + "_" + from;
 }
 
+double simulated_s(const BakeSettings& settings) {
+  if (settings.simulation.duration_s) return *settings.simulation.duration_s;
+  if (settings.get_up_s) return 12.0;
+  return behaviour_settings(settings).kind == Behaviour::limp ? 3.0 : 4.0;
+}
+
 BehaviourSettings behaviour_settings(const BakeSettings& settings) {
   BehaviourSettings behaviour;
   const bool fixed = settings.simulation.fixed_hz > 0.0;
@@ -18,6 +24,9 @@ BehaviourSettings behaviour_settings(const BakeSettings& settings) {
   behaviour.most_steps = static_cast<int>(settings.most_steps);
   behaviour.latency_s = settings.latency_s;
   behaviour.muscle = settings.muscle;
+  const HoldingArms arms = settings.arms;
+  behaviour.arms_free = {arms != HoldingArms::left && arms != HoldingArms::both,
+                         arms != HoldingArms::right && arms != HoldingArms::both};
   behaviour.seed = static_cast<std::uint64_t>(settings.seed);
   return behaviour;
 }

@@ -1,0 +1,161 @@
+#include "bake/take.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bake/score.h"
+#include "bake/stopwatch.h"
+#include "base/errors.h"
+#include "behave/ground.h"
+#include "body/ground.h"
+#include "clip/lead.h"
+#include "clip/recovery.h"
+#include "clip/smooth.h"
+
+namespace ukemi {
+namespace {
+
+constexpr double kMostTransforms = 16'777'216.0;  // of a clip: 9 GB while its keys are reduced
+
+/// Keeps `hold_s` after the moment everything rests.
+void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_time_s, double hold_s) {
+  if (!rest_time_s) return;
+  const double end = std::ceil((*rest_time_s + hold_s) * trajectory.fps - 1e-9);
+  const auto frames = static_cast<std::size_t>(std::max(end, 0.0)) + 1;
+  if (frames >= trajectory.frames.size()) return;
+  trajectory.frames.resize(frames);
+  for (Prop& prop : trajectory.props)
+    if (prop.poses.size() > frames) prop.poses.resize(frames);
+}
+
+/// Farthest that a segment is from another pose's, m (a radian counts as 0.5 m).
+double difference(const BodyPose& a, const BodyPose& b) {
+  constexpr double kPerRadian_m = 0.5;
+  double most = 0.0;
+  for (int s = 0; s < kSegmentCount; ++s)
+    most = std::max({most, (a[s].translation - b[s].translation).norm(),
+                     kPerRadian_m * angle_between(a[s].rotation, b[s].rotation)});
+  return most;
+}
+
+/// A body that has kept its feet in place comes back to where it started, but for a little: the last frames
+/// blend that away, so that the clip ends exactly in its start pose.
+void end_in_start_pose(const BodyPose& start, const ControllerReport& behaviour, Trajectory& trajectory) {
+  constexpr double kBlend_s = 0.15;
+  constexpr double kNear_m = 0.03;
+  const bool stayed = behaviour.steps.empty() && !behaviour.fall_begins_s;
+  if (!stayed || difference(trajectory.frames.back(), start) > kNear_m) return;
+  const auto span = static_cast<std::size_t>(std::lround(kBlend_s * trajectory.fps));
+  const std::size_t count = trajectory.frames.size();
+  if (count <= span + 1) return;
+  for (std::size_t i = count - span; i < count; ++i) {
+    const double share = min_jerk(static_cast<double>(i + 1 + span - count) / static_cast<double>(span));
+    for (int s = 0; s < kSegmentCount; ++s) {
+      Rigid& segment = trajectory.frames[i][s];
+      segment = {segment.rotation.slerp(share, start[s].rotation),
+                 segment.translation + share * (start[s].translation - segment.translation)};
+    }
+  }
+  trajectory.frames.back() = start;
+}
+
+Status check_clip_size(const Character& character, const BakeSettings& settings,
+                       const Trajectory& trajectory) {
+  const double frames = static_cast<double>(trajectory.frames.size()) +
+                        (settings.lead_s + settings.recover_s.value_or(0.0)) * trajectory.fps;
+  const double nodes = character.skeleton.size();
+  if (frames * nodes <= kMostTransforms) return Done{};
+  return usage_error(fmt::format("{:.0f} frames of {:.0f} nodes are more than {:.0f} transforms", frames,
+                                 nodes, kMostTransforms),
+                     "give a shorter --duration or a lower --fps, or take a file with fewer nodes");
+}
+
+/// lift_left, contact_left, lift_right, ..., lift_left_2: when feet leave the ground and stand on it again.
+void add_step_marks(const std::vector<StepTaken>& steps, double end_s, std::vector<Mark>& marks) {
+  std::array<int, 2> taken{};
+  for (const StepTaken& step : steps) {
+    const bool left = step.foot == Segment::foot_l;
+    const int nth = ++taken[left ? 0 : 1];
+    const std::string side =
+        std::string(left ? "_left" : "_right") + (nth > 1 ? fmt::format("_{}", nth) : "");
+    if (step.lift_s <= end_s) marks.push_back({"lift" + side, step.lift_s});
+    if (step.contact_s && *step.contact_s <= end_s) marks.push_back({"contact" + side, *step.contact_s});
+  }
+}
+
+/// What the simulation saw, as far as the clip reaches.
+void add_marks(const SimulationFigures& figures, const ControllerReport& behaviour, Clip& clip) {
+  const double end_s = clip.duration_s();
+  if (figures.first_ground_contact_s && *figures.first_ground_contact_s <= end_s)
+    clip.marks.push_back({"first_ground_contact", *figures.first_ground_contact_s});
+  add_step_marks(behaviour.steps, end_s, clip.marks);
+  const auto& fall = behaviour.fall_begins_s;
+  if (fall && *fall <= end_s) clip.marks.push_back({"fall_begins", *fall});
+  if (figures.rest_time_s && *figures.rest_time_s <= end_s)
+    clip.marks.push_back({"rest", *figures.rest_time_s});
+}
+
+/// From the simulated segments to the clip with all that stands before and behind them.
+Status make_timeline(const Character& character, const BakeSettings& settings, Trajectory trajectory,
+                     BakedClip& outcome) {
+  const Prepared& prepared = outcome.prepared;
+  const Actor actor = prepared.actor(character);
+  const double gravity = settings.simulation.gravity;
+  const auto skin = outermost_skin(character, prepared.humanoid, prepared.start.pose, prepared.start.segments,
+                                   prepared.body);
+  outcome.ground_lift_max_m = lift_skin_above_floor(trajectory.frames, trajectory.fps, skin);
+  if (settings.get_up_s)
+    outcome.get_up = add_get_up(
+        prepared.body, prepared.range, prepared.start.state.segments, skin,
+        {settings.get_up_style, static_cast<std::uint64_t>(settings.seed), trajectory.fps}, trajectory);
+  outcome.timeline = timeline_of(actor, std::move(trajectory), prepared.reaction, outcome.resample_error);
+  Clip& clip = outcome.timeline.clip;
+  add_marks(outcome.figures, outcome.behaviour, clip);
+  if (outcome.get_up) add_get_up_marks(*outcome.get_up, clip);
+  if (settings.extra_bones_play) play_extra_bones(actor, clip);
+  if (settings.smooth_hz) smooth(clip, *settings.smooth_hz);
+  add_lead(actor, prepared.scene, gravity, settings.lead_s, outcome.timeline);
+  if (!settings.recover_s) return Done{};
+  return add_recovery(actor, *settings.recover_s, settings.recover_to, gravity, outcome.timeline);
+}
+
+}  // namespace
+
+Result<SimulationResult> simulate_take(const BakeSettings& settings, const Prepared& prepared,
+                                       const BehaviourSettings& behaviour, Diagnostics& diagnostics) {
+  SimulationSettings simulated = settings.simulation;
+  simulated.duration_s = simulated_s(settings);
+  return simulate(simulation_input(prepared, prepared.scene, simulated, behaviour), diagnostics);
+}
+
+Result<BakedClip> clip_of_take(const Character& character, const BakeSettings& settings,
+                               const Prepared& prepared, SimulationResult simulation) {
+  BakedClip outcome;
+  outcome.prepared = prepared;
+  outcome.limits = simulation.limits;
+  outcome.figures = std::move(simulation.figures);
+  outcome.behaviour = std::move(simulation.behaviour);
+  Trajectory& trajectory = simulation.trajectory;
+  const bool blow = prepared.scene.kind != SceneKind::none;
+  const bool gets_up =
+      settings.get_up_s && lying_of(prepared.body, trajectory.frames.back()) != Lying::upright;
+  const auto& rest_s = outcome.figures.rest_time_s;
+  if ((settings.until_rest && blow) || gets_up)
+    trim_still_tail(trajectory, rest_s, gets_up ? *settings.get_up_s : settings.hold_s);
+  if (gets_up && rest_s) hold_last_frame(*rest_s + *settings.get_up_s, trajectory);
+  if (prepared.behaviour.kind != Behaviour::limp)
+    end_in_start_pose(prepared.start.state.segments, outcome.behaviour, trajectory);
+  if (const Status status = check_clip_size(character, settings, trajectory); !status) return status.error();
+  if (const Status status = make_timeline(character, settings, std::move(trajectory), outcome); !status)
+    return status.error();
+  const auto human = load_range_of_motion("human");
+  if (!human) return human.error();
+  outcome.human = clip_limits(prepared.humanoid, *human, outcome.timeline.trajectory.frames);
+  outcome.score = human_score(character, settings, outcome);
+  return outcome;
+}
+
+}  // namespace ukemi
