@@ -51,7 +51,7 @@ Choice varied(const Choice& choice, Random& random) {
   return other;
 }
 
-struct Trial {
+struct TriedTake {
   std::optional<BakedClip> take;  // nothing: it did not reach the outcome and was not followed to its end
   Diagnostics diagnostics;
 };
@@ -63,20 +63,20 @@ class Search {
       : character_(character), settings_(settings), prepared_(prepared), run_(run) {}
 
   /// The best of the choices that reach the outcome.
-  Result<std::optional<Trial>> best_of(const std::vector<Choice>& choices);
+  Result<std::optional<TriedTake>> best_of(const std::vector<Choice>& choices);
   /// The least force from outside that reaches the outcome.
-  Result<std::optional<Trial>> helped();
+  Result<std::optional<TriedTake>> helped();
   /// A trial whatever becomes of it.
-  Result<Trial> followed(const Choice& choice);
+  Result<TriedTake> followed(const Choice& choice);
   int trials() const { return trials_; }
   bool interrupted() const { return interrupted_; }
 
  private:
-  Result<Trial> tried(const Choice& choice) const;
+  Result<TriedTake> tried(const Choice& choice) const;
   bool reaches(const BakedClip& take) const;
   bool is_enough(const BakedClip& take) const;
-  Result<Trial> run(const Choice& choice, bool must_stand) const;
-  Result<std::optional<Trial>> with_help(double most_n);
+  Result<TriedTake> run(const Choice& choice, bool must_stand) const;
+  Result<std::optional<TriedTake>> with_help(double most_n);
 
   const Character& character_;
   const BakeSettings& settings_;
@@ -86,12 +86,12 @@ class Search {
   bool interrupted_ = false;
 };
 
-Result<Trial> Search::run(const Choice& choice, bool must_stand) const {
+Result<TriedTake> Search::run(const Choice& choice, bool must_stand) const {
   Stopwatch watch;
   BehaviourSettings behaviour = prepared_.behaviour;
   behaviour.choice = choice;
   behaviour.must_stand = must_stand;
-  Trial trial;
+  TriedTake trial;
   auto simulation = simulate_take(settings_, prepared_, behaviour, trial.diagnostics);
   if (!simulation) return simulation.error();
   if (must_stand && simulation->behaviour.fall_begins_s) return trial;
@@ -104,9 +104,9 @@ Result<Trial> Search::run(const Choice& choice, bool must_stand) const {
   return trial;
 }
 
-Result<Trial> Search::followed(const Choice& choice) { return run(choice, false); }
+Result<TriedTake> Search::followed(const Choice& choice) { return run(choice, false); }
 
-Result<Trial> Search::tried(const Choice& choice) const {
+Result<TriedTake> Search::tried(const Choice& choice) const {
   auto trial = run(choice, settings_.outcome == Wanted::stand);
   if (trial && trial->take && !reaches(*trial->take)) trial->take.reset();
   return trial;
@@ -125,12 +125,12 @@ bool Search::is_enough(const BakedClip& take) const {
 }
 
 /// Trials are run side by side in groups; what counts goes by their order alone.
-Result<std::optional<Trial>> Search::best_of(const std::vector<Choice>& choices) {
-  std::optional<Trial> best;
+Result<std::optional<TriedTake>> Search::best_of(const std::vector<Choice>& choices) {
+  std::optional<TriedTake> best;
   const auto group = static_cast<std::size_t>(std::max(1, run_.threads));
   for (std::size_t begin = 0; begin < choices.size(); begin += group) {
     const std::size_t count = std::min(group, choices.size() - begin);
-    std::vector<Trial> trials(count);
+    std::vector<TriedTake> trials(count);
     const Status status = for_each_parallel(count, run_.threads, [&](std::size_t i) -> Status {
       auto trial = tried(choices[begin + i]);
       if (!trial) return trial.error();
@@ -138,7 +138,7 @@ Result<std::optional<Trial>> Search::best_of(const std::vector<Choice>& choices)
       return Done{};
     });
     if (!status) return status.error();
-    for (Trial& trial : trials) {
+    for (TriedTake& trial : trials) {
       ++trials_;
       if (run_.after_each) run_.after_each(trials_, static_cast<int>(choices.size()));
       if (!trial.take) continue;
@@ -153,7 +153,7 @@ Result<std::optional<Trial>> Search::best_of(const std::vector<Choice>& choices)
   return best;
 }
 
-Result<std::optional<Trial>> Search::with_help(double most_n) {
+Result<std::optional<TriedTake>> Search::with_help(double most_n) {
   Choice choice;
   choice.help = {most_n, settings_.outcome == Wanted::fall};
   auto trial = tried(choice);
@@ -162,11 +162,11 @@ Result<std::optional<Trial>> Search::with_help(double most_n) {
   return trial->take ? std::optional(std::move(*trial)) : std::nullopt;
 }
 
-Result<std::optional<Trial>> Search::helped() {
+Result<std::optional<TriedTake>> Search::helped() {
   constexpr int kDoublings = 6, kHalvings = 3;
   double enough = 0.05 * prepared_.body.mass_kg * settings_.simulation.gravity;
   double too_little = 0.0;
-  std::optional<Trial> best;
+  std::optional<TriedTake> best;
   for (int i = 0; i < kDoublings && !best; ++i) {
     auto trial = with_help(enough);
     if (!trial) return trial.error();

@@ -793,14 +793,14 @@ double faults_of(const WholeBody& whole, const GetUp& get_up) {
 }
 
 /// What the pose decides.
-struct Choice {
+struct Way {
   Route route;
   Vec3 ahead;  // where he will face
   bool a_is_right;
 };
 
-Choice choose(const ArticulatedBody& body, const BodyPose& lying, const GetUpSettings& settings,
-              Random& random) {
+Way choose(const ArticulatedBody& body, const BodyPose& lying, const GetUpSettings& settings,
+           Random& random) {
   const Lying how = lying_of(body, lying);
   const Rigid& chest = lying[index(Segment::chest)];
   const Vec3 up = lying[0].rotation * kY + chest.rotation * kY;
@@ -840,7 +840,7 @@ Result<GetUp> plan_get_up(const ArticulatedBody& body, const RangeOfMotion& rang
     return usage_error("there is nothing to get up from: the body does not lie, sit or kneel",
                        "leave --get-up away");
   Random random(settings.seed ^ 0x6765745f7570ull);
-  Choice choice = choose(body, lying, settings, random);
+  Way choice = choose(body, lying, settings, random);
   for (KeyPose& key : choice.route.keys) {
     in_style(settings.style, key);
     vary(random, key);

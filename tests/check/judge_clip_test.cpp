@@ -11,14 +11,11 @@
 #include <set>
 
 #include "bake/bake.h"
-#include "prepare/direction.h"
-<<<<<<< HEAD
-#include "base/character_path.h"
-=======
 #include "bake/record.h"
->>>>>>> 37b4325 (Score of every bake in its report and manifest; schema of judge's output)
+#include "base/character_path.h"
 #include "judge/judge.h"
 #include "load/load.h"
+#include "prepare/direction.h"
 #include "support/extra_data.h"
 
 namespace ukemi {

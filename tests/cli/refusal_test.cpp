@@ -190,7 +190,7 @@ TEST_F(Help, HasPagesToReadThatTheOverviewNames) {
 
 TEST_F(Help, TellsDefaultsAndLegalRanges) {
   const std::string text = run({"bake", "--help"}).out;
-  for (const char* part : {"--fps N", "[default 60; 1 to 1000]", "[default 3; above 0, at most 60]",
+  for (const char* part : {"--fps N", "[default 60; 1 to 1000]", "[default: 4, limp 3, with --get-up 12;",
                            "[default medicine-ball]", "[default chest]", "[default: found out]"})
     EXPECT_NE(text.find(part), std::string::npos) << part;
 }

@@ -280,7 +280,7 @@ std::string hash_of_a_sane_bake() {
 
 void expect_finite(const Request& request, const SimulationResult& result) {
   const auto& settings = request.settings;
-  const auto frames = static_cast<std::size_t>(std::floor(settings.duration_s * settings.fps + 1e-6)) + 1;
+  const auto frames = static_cast<std::size_t>(std::floor(duration_of(settings) * settings.fps + 1e-6)) + 1;
   EXPECT_EQ(result.trajectory.frames.size(), frames);
   for (const BodyPose& frame : result.trajectory.frames)
     for (const Rigid& segment : frame) {
