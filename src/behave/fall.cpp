@@ -26,11 +26,18 @@ constexpr double kFullTorqueAt = 0.35;  // rad
 constexpr double kLookAhead_s = 0.25;   // a seated trunk that will have sunk then goes on to lie
 constexpr double kStaysSeated = 0.42;   // of its y axis
 constexpr double kChoosesFor_s = 1.2;   // after landing
-constexpr double kTouching = 1.0, kHardTouching = 0.6;  // share of an arm's effort; more where the shoulder
+constexpr double kTouching = 1.0, kHardTouching = 0.8;  // share of an arm's effort; more where the shoulder
 constexpr double kHardSink_m_s = 2.0;                   // sinks faster than this
 constexpr double kStill_s = 0.5;                        // until a settled body's joints hold still
 constexpr double kStillDamping = 20.0;                  // times that of lying
+constexpr double kOnFront = 0.5;   // side_down.x(): who lands so comes to lie on the belly
+constexpr double kYielding = 0.1;  // share of its effort that an arm keeps where nothing sinks on to it
+constexpr double kHipsThrough = 1.2,
+                 kLooseKnees = 0.05;  // efforts while a kneeling body goes on to the belly
+constexpr double kFlatAfter_s = 0.03, kFlatAtLast_s = 0.4;  // trunk down, or landed: then the legs lie down
+constexpr double kMoving = 1.2;  // effort besides, amid the way to where a part will lie
 
+bool is_hip(Joint j) { return j == Joint::hip_l || j == Joint::hip_r; }
 bool is_arm(Joint j) { return j >= Joint::clavicle_l && j <= Joint::wrist_r; }
 
 }  // namespace
@@ -51,7 +58,8 @@ Falling::Falling(const FallSettings& settings, const ArticulatedBody& body, cons
 }
 
 Falling::Part Falling::part_of(Joint joint) {
-  if (joint <= Joint::neck) return Part::trunk;
+  if (joint == Joint::neck) return Part::neck;
+  if (joint < Joint::neck) return Part::trunk;
   if (!is_arm(joint)) return Part::legs;
   return is_left(joint) ? Part::arm_l : Part::arm_r;
 }
@@ -101,7 +109,7 @@ void Falling::observe(const Senses& senses, double h) {
   if (begun()) {
     feel(senses);
     capture(senses);
-    landing_.observe(body_, senses, way());
+    landing_.observe(body_, senses, way(), h);
     if (landing_.landed_s() && !report_.landed_s) report_.landed_s = landing_.landed_s();
     choose_pose(senses, h);
     settle_parts(senses);
@@ -168,7 +176,9 @@ EndPose coming_pose(const Senses& senses, EndPose now, double tau) {
 
 /// The pose that the body comes to, once that has lasted; who lies does not sit up again.
 void Falling::choose_pose(const Senses& senses, double h) {
-  if (!landing_.landed_s() && landing_.kneels_s()) pose_ = EndPose::prone;  // knees first: on to the belly
+  // Knees first, or the front: on to the belly.
+  const bool forward = landing_.kneels_s() || (landing_.landed_s() && way().side_down.x() > kOnFront);
+  if (pose_ == EndPose::standing && forward) pose_ = EndPose::prone;
   if (!landing_.landed_s()) return;
   const EndPose present = end_pose_of(senses);
   report_.end_pose = name(present);
@@ -179,7 +189,7 @@ void Falling::choose_pose(const Senses& senses, double h) {
   const bool late = senses.time_s > *landing_.landed_s() + kChoosesFor_s * body_.tau;
   if (now == pose_ || now == EndPose::standing || late || seen_s_ < 0.1 * body_.tau) return;
   pose_ = now;
-  for (int p = 0; p < 4; ++p)
+  for (std::size_t p = 0; p < settling_.size(); ++p)
     if (settling_[p]) settle(static_cast<Part>(p), senses.time_s, 0.7 * body_.tau);
 }
 
@@ -190,27 +200,41 @@ void Falling::settle(Part part, double time_s, double takes_s) {
     if (part_of(joint_at(j)) == part) turns_[j] = {held_[j], share_[j], time_s, takes_s};
 }
 
+/// A body that has gone over its knees lies.
+bool Falling::is_flat(double time_s) const {
+  const auto& down_s = landing_.trunk_down_s();
+  return (down_s && time_s - *down_s > kFlatAfter_s * body_.tau) ||
+         time_s - *landing_.landed_s() > kFlatAtLast_s * body_.tau;
+}
+
 /// Legs give as soon as the body is down, an arm when it has braked, the trunk when it lies or is slow.
 void Falling::settle_parts(const Senses& senses) {
   const double time_s = senses.time_s;
   const auto begin = [&](Part part, double takes_s) {
-    if (!settling_[static_cast<std::size_t>(part)]) settle(part, time_s, takes_s * body_.tau);
+    if (!is_settling(part)) settle(part, time_s, takes_s * body_.tau);
   };
-  if (landing_.kneels_s()) begin(Part::legs, 0.25);
+  if (landing_.kneels_s()) begin(Part::legs, 0.2);
   if (!landing_.landed_s() || pose_ == EndPose::standing) return;
   const double since_s = (time_s - *landing_.landed_s()) / body_.tau;
   const bool prone = pose_ == EndPose::prone;
   begin(Part::legs, prone ? 0.4 : 0.8);
+  if (prone && !flat_ && is_flat(time_s)) {
+    flat_ = true;
+    settle(Part::legs, time_s, 0.7 * body_.tau);
+  }
   const bool lies = landing_.chest_down_s() && time_s - *landing_.chest_down_s() > 0.05 * body_.tau;
   const double speed = senses.velocity[index(Segment::chest)].norm() / body_.tau;
   if (prone || lies || (since_s > 0.25 && speed < 0.5) || since_s > 0.8)
     begin(Part::trunk, prone ? 0.5 : 0.7);
+  // The face is kept up until the chest has come down.
+  const bool face_down = prone ? (lies || since_s > 0.2) && speed < 0.3 : is_settling(Part::trunk);
+  if (face_down) begin(Part::neck, prone ? 0.8 : 0.7);
   if (pose_ == EndPose::seated) return;  // the arms prop
   for (const BodySide side : kSides) {
     const ArmLanding& arm = landing_.arm(side);
     const bool braked = !prone && arm.braked_s && time_s - *arm.braked_s > 0.12 * body_.tau;
-    if (braked || (lies && since_s > 0.2) || since_s > 0.7)
-      begin(side == BodySide::left ? Part::arm_l : Part::arm_r, prone ? 0.45 : 0.7);
+    if (braked || (lies && since_s > 0.2) || since_s > (prone ? 0.4 : 0.7))
+      begin(side == BodySide::left ? Part::arm_l : Part::arm_r, 0.7);
   }
 }
 
@@ -282,20 +306,20 @@ void Falling::aim_arms(const Senses& senses, PerJoint<Quat>& goals) const {
 /// What each joint is turned to: of falling, or of lying once its part settles.
 PerJoint<Quat> Falling::goals_of(const Senses& senses) const {
   PerJoint<Quat> falling = held_;
-  crouch(way(), variation_, body_.lambda, falling);
+  crouch(way(), variation_, body_.lambda, dive(body_, senses, way()), falling);
   PerJoint<Quat> lying = held_;
   lie(pose_, variation_, lying);
+  if (pose_ == EndPose::prone && !flat_) sprawl(lying);
   for (int j = 0; j < kJointCount; ++j) {
     const Joint joint = joint_at(j);
-    const bool settles = settling_[static_cast<std::size_t>(part_of(joint))];
+    const bool settles = is_settling(part_of(joint));
     if (settles || !is_arm(joint) || joint == Joint::clavicle_l || joint == Joint::clavicle_r)
       falling[j] = body_.inside(joint, settles ? lying[j] : falling[j], kMargin);
   }
   PerJoint<Quat> arms = falling;
   aim_arms(senses, arms);
   for (int j = 0; j < kJointCount; ++j)
-    if (is_arm(joint_at(j)) && !settling_[static_cast<std::size_t>(part_of(joint_at(j)))])
-      falling[j] = arms[j];
+    if (is_arm(joint_at(j)) && !is_settling(part_of(joint_at(j)))) falling[j] = arms[j];
   return falling;
 }
 
@@ -303,7 +327,10 @@ Falling::Effort Falling::falling_effort(Joint joint, double time_s) const {
   Effort effort;
   switch (part_of(joint)) {
     case Part::trunk:
-      effort = joint == Joint::neck ? Effort{1.2, 0.12} : Effort{0.7, 0.12};
+      effort = {0.7, 0.12};
+      break;
+    case Part::neck:
+      effort = {1.2, 0.12};
       break;
     case Part::legs:
       effort = {0.6 + 0.6 * way().backward, 0.15 + 0.15 * way().backward};
@@ -328,11 +355,13 @@ Falling::Effort Falling::arm_effort(Joint joint, double time_s) const {
       wrist ? 2.5
             : kTouching + kHardTouching * std::clamp(arm.sink_m_s / body_.tau - kHardSink_m_s, 0.0, 1.0),
       0.30};
+  if (pose_ == EndPose::prone) {
+    effort.share *= kYielding + (1.0 - kYielding) * arm.brake;  // on to the belly
+    return effort;
+  }
   if (!arm.braked_s || pose_ == EndPose::seated) return effort;
   const double since_s = (time_s - *arm.braked_s) / body_.tau;
-  // A forward fall goes on to the belly; else the arms prop for a while.
-  effort.share *= pose_ == EndPose::prone ? 1.0 - 0.75 * min_jerk(since_s / 0.25)
-                                          : 1.0 - 0.5 * min_jerk((since_s - 0.2) / 0.6);
+  effort.share *= 1.0 - 0.5 * min_jerk((since_s - 0.2) / 0.6);  // props for a while
   return effort;
 }
 
@@ -340,9 +369,13 @@ double Falling::lying_share(Joint joint) const {
   const bool seated = pose_ == EndPose::seated;
   switch (part_of(joint)) {
     case Part::trunk:
-      return (joint == Joint::neck ? 0.5 : seated ? 0.5 : 0.25) * settings_.propping;
+      return (seated ? 0.5 : 0.25) * settings_.propping;
+    case Part::neck:
+      return 0.5 * settings_.propping;
     case Part::legs:
-      return (pose_ == EndPose::prone && !report_.settled_s ? 0.5 : 0.22) * settings_.propping;
+      if (pose_ == EndPose::prone && !flat_)
+        return (is_hip(joint) ? kHipsThrough : kLooseKnees) * settings_.propping;
+      return (pose_ == EndPose::prone && !report_.settled_s ? 0.4 : 0.22) * settings_.propping;
     default:
       return (seated ? 0.6 : landing_.chest_down_s() ? 0.25 : 0.15) * settings_.propping;
   }
@@ -350,11 +383,12 @@ double Falling::lying_share(Joint joint) const {
 
 Falling::Effort Falling::effort_of(Joint joint, double time_s) const {
   const Turn& turn = turns_[index(joint)];
-  if (!settling_[static_cast<std::size_t>(part_of(joint))]) return falling_effort(joint, time_s);
+  if (!is_settling(part_of(joint))) return falling_effort(joint, time_s);
   const double way = turn.way(time_s);
   const double still =
       report_.settled_s ? min_jerk((time_s - *report_.settled_s) / (kStill_s * body_.tau)) : 0.0;
-  return {turn.from_share + way * (lying_share(joint) - turn.from_share),
+  const double moving = landing_.landed_s() ? kMoving * 4.0 * way * (1.0 - way) * settings_.propping : 0.0;
+  return {turn.from_share + way * (lying_share(joint) - turn.from_share) + moving,
           (0.12 + 0.1 * way) * (1.0 + (kStillDamping - 1.0) * still)};
 }
 
@@ -379,7 +413,7 @@ void Falling::ask(const Senses& senses) {
     share_[j] = effort.share;
     velocity_[j] = Vec3::Zero();
     const double h = senses.time_s - before_.time_s;
-    if (part_of(joint) == Part::legs && h > 0.0 && !settling_[static_cast<std::size_t>(Part::legs)])
+    if (part_of(joint) == Part::legs && h > 0.0 && !is_settling(Part::legs))
       velocity_[j] =
           (senses.pose[index(parent_of(joint))].rotation * log_rotation(held_[j] * last.conjugate())) / h;
     damping_s_[j] = effort.damping_s;

@@ -61,7 +61,7 @@ class Falling : public Controller {
     double begins_s = 0.0, takes_s = 0.28;
     double way(double time_s) const;
   };
-  enum class Part { trunk, arm_l, arm_r, legs };
+  enum class Part { trunk, neck, arm_l, arm_r, legs };
 
   static Part part_of(Joint joint);
   bool protects(BodySide side) const;
@@ -69,6 +69,8 @@ class Falling : public Controller {
   void capture(const Senses& senses);
   void choose_pose(const Senses& senses, double h);
   void settle_parts(const Senses& senses);
+  bool is_flat(double time_s) const;
+  bool is_settling(Part part) const { return settling_[static_cast<std::size_t>(part)]; }
   void settle(Part part, double time_s, double takes_s);
   void watch_calm(const Senses& senses, double h);
   PerJoint<Quat> goals_of(const Senses& senses) const;
@@ -95,10 +97,11 @@ class Falling : public Controller {
   PerJoint<double> share_{};
   PerJoint<double> damping_s_{};
   PerJoint<Vec3> velocity_;
-  std::array<bool, 4> settling_{};  // parts
+  std::array<bool, 5> settling_{};  // parts
   EndPose pose_ = EndPose::standing;
   EndPose seen_ = EndPose::standing;  // and for how long
   double seen_s_ = 0.0;
+  bool flat_ = false;  // on the belly: the legs lie down
   double calm_s_ = 0.0, slow_s_ = 0.0, still_s_ = 0.0;
   std::optional<double> rest_s_;
 };

@@ -6,6 +6,8 @@
 namespace ukemi {
 namespace {
 
+constexpr double kLeastAhead =
+    0.3;  // of what an arm reaches: a hand that is far from the ground goes so far ahead
 constexpr double kShortest = 0.35;  // of the arm's length: wrist from the shoulder
 constexpr double kMostPronation = radians(82.0);
 constexpr double kBentArm = 0.8;  // of the arm's length: how high the shoulder is when the hand touches
@@ -103,8 +105,18 @@ Quat from_axes(const Vec3& y, const Vec3& z) {
   return Quat(axes).normalized();
 }
 
+/// A place that is out of reach is drawn in over the ground: the hand comes down to it all the same.
+Vec3 within_reach(const Vec3& shoulder, const Vec3& wrist, double reach_m) {
+  const Vec3 to = wrist - shoulder;
+  const double away = flat(to).norm();
+  const double most =
+      std::max(std::sqrt(std::max(0.0, reach_m * reach_m - to.y() * to.y())), kLeastAhead * reach_m);
+  if (away <= most) return wrist;
+  return wrist - (1.0 - most / away) * flat(to);
+}
+
 Links two_bone(const Vec3& shoulder, const HandTarget& target, const ArmSize& size) {
-  const Vec3 to = target.wrist - shoulder;
+  const Vec3 to = within_reach(shoulder, target.wrist, target.stretch * size.reach_m()) - shoulder;
   const Vec3 line = unit_or(to, -Vec3::UnitY());
   const double reach = std::clamp(to.norm(), kShortest * size.reach_m(), target.stretch * size.reach_m());
   const double least = std::abs(size.upper_m - size.fore_m) + 1e-3;

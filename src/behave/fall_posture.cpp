@@ -1,5 +1,6 @@
 #include "behave/fall_posture.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/random.h"
@@ -22,16 +23,21 @@ struct ByWay {
   }
 };
 
-constexpr ByWay kNeck{45.0, 46.0, 30.0};  // away from the ground
-constexpr ByWay kTrunk{4.0, 42.0, 8.0};   // flexion
+constexpr ByWay kNeck{45.0, 46.0, 30.0};   // away from the ground
+constexpr ByWay kTrunk{-12.0, 42.0, 8.0};  // flexion
 constexpr ByWay kTrunkAside{0.0, 0.0, 16.0};
 constexpr ByWay kTrunkTurn{0.0, 0.0, 26.0};
-constexpr ByWay kHip{50.0, 95.0, 55.0};
+constexpr ByWay kHip{50.0, 70.0, 55.0};
 constexpr ByWay kKnee{95.0, 110.0, 98.0};
 constexpr ByWay kAnkle{-5.0, 12.0, 0.0};
 constexpr ByWay kClavicle{12.0, -8.0, 6.0};  // protraction
 constexpr double kAbduction = radians(5.0);
-constexpr double kSidewaysLegs = 0.25;  // the lower leg bends more by this share
+// A dive: the trunk is level (degrees from upright) while the knees are up: then nothing but the belly comes
+// down.
+constexpr double kDivesFrom = 50.0, kDivesIn = 30.0;
+constexpr double kKneeling_m = 0.15, kKneesUp_m = 0.2;  // knees so high kneel; so much higher do not
+constexpr double kDivingKnees = 0.75;                   // share of their bend that goes
+constexpr double kSidewaysLegs = 0.25;                  // the lower leg bends more by this share
 
 Quat bend(double about_x, double about_y, double about_z) {
   return exp_rotation(Vec3(about_x, about_y, about_z));
@@ -49,10 +55,11 @@ void bend_trunk(const FallWay& way, const FallVariation& variation, PerJoint<Qua
   goals[index(Joint::neck)] = bend(-away * way.side_down.y(), variation.head_turn, away * way.side_down.x());
 }
 
-void bend_leg(const FallWay& way, double bending, BodySide side, PerJoint<Quat>& goals) {
+void bend_leg(const FallWay& way, double bending, double flat, BodySide side, PerJoint<Quat>& goals) {
   goals[index(on(side, Joint::hip_r))] =
-      bend(-sign(side) * kAbduction * bending, 0.0, kHip.of(way) * bending);
-  goals[index(on(side, Joint::knee_r))] = bend(0.0, 0.0, -kKnee.of(way) * bending);
+      bend(-sign(side) * kAbduction * bending, 0.0, kHip.of(way) * bending * (1.0 - flat));
+  goals[index(on(side, Joint::knee_r))] =
+      bend(0.0, 0.0, -kKnee.of(way) * bending * (1.0 - kDivingKnees * flat));
   goals[index(on(side, Joint::ankle_r))] = bend(0.0, 0.0, kAnkle.of(way) * bending);
 }
 
@@ -76,13 +83,23 @@ FallVariation fall_variation(std::uint64_t seed) {
   return v;
 }
 
-void crouch(const FallWay& way, const FallVariation& variation, double lambda, PerJoint<Quat>& goals) {
+double dive(const FallBody& body, const Senses& senses, const FallWay& way) {
+  const double up = (senses.pose[index(Segment::chest)].rotation * Vec3::UnitY()).y();
+  const double pitch = degrees(std::acos(std::clamp(up, -1.0, 1.0)));
+  const double knees_m = std::min(senses.pose[index(Segment::shank_l)].translation.y(),
+                                  senses.pose[index(Segment::shank_r)].translation.y());
+  return way.forward * min_jerk((pitch - kDivesFrom) / kDivesIn) *
+         min_jerk((knees_m / body.lambda - kKneeling_m) / kKneesUp_m);
+}
+
+void crouch(const FallWay& way, const FallVariation& variation, double lambda, double flat,
+            PerJoint<Quat>& goals) {
   bend_trunk(way, variation, goals);
   const double far = kLeastBend + (1.0 - kLeastBend) * min_jerk(way.beyond_m / (kFullBendBeyond_m * lambda));
   for (const BodySide side : kSides) {
     const double lower = kSidewaysLegs * way.sideways * (sign(side) == way.side ? 1.0 : -1.0);
     const double own = variation.leg_bend * sign(side) * (1.0 - way.sideways);
-    bend_leg(way, far * (1.0 + own + lower), side, goals);
+    bend_leg(way, far * (1.0 + own + lower), flat, side, goals);
     goals[index(on(side, Joint::clavicle_r))] = bend(0.0, sign(side) * kClavicle.of(way), 0.0);
   }
 }

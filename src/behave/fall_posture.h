@@ -18,8 +18,13 @@ struct FallVariation {
 };
 FallVariation fall_variation(std::uint64_t seed);
 
+/// 0 to 1: how far a forward fall has become a dive, the trunk level before the knees are down. Its legs are
+/// stretched, so that it lands on hands and belly.
+double dive(const FallBody& body, const Senses& senses, const FallWay& way);
+
 /// Joint rotations from the neutral pose, parent_from_child, not yet clamped to the range: the joints of the
-/// arms are left as they are given.
-void crouch(const FallWay& way, const FallVariation& variation, double lambda, PerJoint<Quat>& goals);
+/// arms are left as they are given. `flat`: see dive().
+void crouch(const FallWay& way, const FallVariation& variation, double lambda, double flat,
+            PerJoint<Quat>& goals);
 
 }  // namespace ukemi

@@ -62,8 +62,8 @@ void lie_supine(BodySide lead, double turn, PerJoint<Quat>& goals) {
 
 void lie_prone(BodySide lead, double turn, PerJoint<Quat>& goals) {
   set_trunk({-4.0, 0.0, 0.0}, {-12.0, 0.0, turn * 62.0}, goals);
-  set_leg(lead, {2.0, 14.0, -8.0, 12.0, -45.0}, goals);
-  set_leg(other(lead), {-5.0, 6.0, 0.0, 4.0, -45.0}, goals);
+  set_leg(lead, {6.0, 26.0, -38.0, 34.0, -40.0}, goals);
+  set_leg(other(lead), {-5.0, 8.0, 0.0, 6.0, -45.0}, goals);
   set_arm(lead, {60.0, 55.0, 20.0, 95.0, 70.0, 0.0}, goals);
   set_arm(other(lead), {15.0, 42.0, 20.0, 60.0, 70.0, 0.0}, goals);
 }
@@ -121,6 +121,10 @@ EndPose end_pose_of(const Senses& senses) {
   }
   if (std::abs(right_up) > kOnSide) return right_up > 0.0 ? EndPose::left_side : EndPose::right_side;
   return front_up >= 0.0 ? EndPose::supine : EndPose::prone;
+}
+
+void sprawl(PerJoint<Quat>& goals) {
+  for (const BodySide side : kSides) set_leg(side, {-5.0, 8.0, 0.0, 8.0, -45.0}, goals);
 }
 
 void lie(EndPose pose, const FallVariation& variation, PerJoint<Quat>& goals) {

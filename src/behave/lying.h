@@ -17,6 +17,9 @@ EndPose end_pose_of(const Senses& senses);
 /// seated body, which prop it, are left as they are given.
 void lie(EndPose pose, const FallVariation& variation, PerJoint<Quat>& goals);
 
+/// The legs of a body that goes over its knees on to the belly: stretched, until it lies.
+void sprawl(PerJoint<Quat>& goals);
+
 /// Breathing: how far chest, spine and neck are turned about z (extension is positive) `time_s` after the
 /// first breath, rad, and how fast, rad/s; other joints do not take part. The chest rises and falls by
 /// about 4.5 mm in a man.

@@ -158,8 +158,8 @@ TEST(Crouch, of_a_mirrored_fall_is_mirrored) {
     const Senses senses = tipped(faller, 0.5, azimuth + 10, 1.2);
     PerJoint<Quat> here;
     PerJoint<Quat> there;
-    crouch(way_of(body, senses), none, body.lambda, here);
-    crouch(way_of(body, mirrored(senses)), none, body.lambda, there);
+    crouch(way_of(body, senses), none, body.lambda, 0.0, here);
+    crouch(way_of(body, mirrored(senses)), none, body.lambda, 0.0, there);
     for (int j = 0; j < kJointCount; ++j) {
       if (is_left(joint_at(j)) ||
           (j >= index(Joint::clavicle_r) && j <= index(Joint::wrist_r) && j != index(Joint::clavicle_r)))
@@ -168,6 +168,77 @@ TEST(Crouch, of_a_mirrored_fall_is_mirrored) {
       EXPECT_LT(angle_between(here[j], other), 1e-6) << name(joint_at(j)) << " at " << azimuth;
     }
   }
+}
+
+TEST(Dive, is_a_level_trunk_over_knees_that_are_up) {
+  const Faller faller;
+  const FallBody body = faller.body();
+  const auto dive_at = [&](double angle, double azimuth, double height) {
+    Senses senses = tipped(faller, angle, azimuth, 2.0);
+    for (Rigid& segment : senses.pose) segment.translation.y() += height;
+    return dive(body, senses, way_of(body, senses));
+  };
+  EXPECT_EQ(dive_at(0.3, 0.0, 0.0), 0.0);              // still upright
+  EXPECT_GT(dive_at(radians(85.0), 0.0, 0.4), 0.99);   // level, all of it in the air
+  EXPECT_EQ(dive_at(radians(85.0), 0.0, 0.0), 0.0);    // level, and the knees are down
+  EXPECT_EQ(dive_at(radians(85.0), 180.0, 0.4), 0.0);  // on to the back
+}
+
+TEST(Crouch, of_a_dive_has_straight_hips) {
+  const Faller faller;
+  const FallBody body = faller.body();
+  const FallWay way = way_of(body, tipped(faller, 0.8, 0.0, 2.0));
+  PerJoint<Quat> goals;
+  crouch(way, {}, body.lambda, 1.0, goals);
+  EXPECT_LT(log_rotation(goals[index(Joint::hip_l)]).z(), radians(1.0));
+  crouch(way, {}, body.lambda, 0.0, goals);
+  EXPECT_GT(log_rotation(goals[index(Joint::hip_l)]).z(), radians(20.0));
+}
+
+TEST(Falling, over_the_knees_stretches_the_hips_and_lets_the_knees_go) {
+  const Faller faller;
+  Falling falling({}, faller.man.body, faller.man.range, faller.strength);
+  Senses senses = tipped(faller, 0.7, 0.0, 1.5);
+  falling.start(senses);
+  falling.begin(senses, at_once(0.0));
+  const auto after = [&](double until_s) {
+    for (; senses.time_s < until_s; senses.time_s += 0.01) falling.observe(senses, 0.01);
+    Goals goals;
+    falling.drive(senses.time_s, goals);
+    return goals;
+  };
+  const Goals before = after(0.4);
+  senses.contacts.push_back(test::touches_floor(senses, Segment::shank_l));
+  const Goals kneeling = after(0.7);
+  const auto hip = [](const Goals& goals) {
+    return log_rotation(goals.joints[index(Joint::hip_l)][0].parent_from_child).z();
+  };
+  const auto knee = [](const Goals& goals) {
+    return goals.joints[index(Joint::knee_l)][0].stiffness_n_m_rad;
+  };
+  EXPECT_GT(hip(before), radians(20.0));
+  EXPECT_LT(hip(kneeling), 0.0);
+  EXPECT_LT(knee(kneeling), 0.2 * knee(before));
+}
+
+TEST(ArmLanding, brakes_what_sinks_and_yields_to_what_hardly_does) {
+  const Faller faller;
+  const FallBody body = faller.body();
+  Senses senses = tipped(faller, 1.2, 0.0, 1.0);
+  const FallWay way = way_of(body, senses);
+  Landing landing;
+  senses.contacts.push_back(test::touches_floor(senses, Segment::hand_r));
+  const auto brake_at = [&](double sink) {
+    senses.velocity[index(Segment::upperarm_r)] = Vec3(0.0, -sink, 0.0);
+    for (int i = 0; i < 40; ++i) {
+      senses.time_s += 0.01;
+      landing.observe(body, senses, way, 0.01);
+    }
+    return landing.arm(BodySide::right).brake;
+  };
+  EXPECT_GT(brake_at(1.5), 0.99);
+  EXPECT_LT(brake_at(0.3), 0.01);
+  EXPECT_GT(brake_at(1.5), 0.9);
 }
 
 TEST(LandingPlace, of_a_mirrored_fall_is_mirrored) {
