@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "bake/setting_table.h"
+#include "base/character_path.h"
 #include "judge/judge.h"
-#include "load/character_path.h"
 #include "load/load.h"
+#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
