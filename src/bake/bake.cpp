@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "bake/append.h"
 #include "bake/outputs.h"
 #include "bake/report.h"
 #include "bake/search.h"
@@ -18,6 +17,8 @@
 #include "clip/frames.h"
 #include "clip/root_motion.h"
 #include "export/additive.h"
+#include "export/append.h"
+#include "fbx/fbx.h"
 #include "load/load.h"
 #include "prepare/setting_table.h"
 
@@ -73,12 +74,33 @@ Result<std::vector<std::uint8_t>> gltf_bytes(const fs::path& path, const Charact
   return bytes_of(*text);
 }
 
+/// Into the character's own FBX, the earlier output, or a document of its own.
+Result<std::vector<std::uint8_t>> fbx_bytes(const fs::path& path, const Character& character,
+                                            const BakeSettings& settings, const ExportedClip& exported,
+                                            Diagnostics& diagnostics) {
+  const bool appends = settings.append && fs::exists(path);
+  FbxOptions options;
+  options.clip_only = settings.clip_only && !appends;  // what the file holds stays
+  std::vector<std::uint8_t> source;
+  if (appends || is_fbx(character)) {
+    options.source_path = appends ? path : character.path;
+    auto bytes = read_file(options.source_path, LoadOptions{}.max_file_bytes);
+    if (!bytes) return bytes.error();
+    source = std::move(*bytes);
+    options.source = source;
+  }
+  const Character& shown = exported.with_root ? *exported.with_root : character;
+  return write_fbx(shown, exported.humanoid, exported.clip, options, diagnostics);
+}
+
 Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Character& character,
                                                const BakeSettings& settings, const BakedFile& baked,
                                                const ExportedClip& exported, Diagnostics& diagnostics) {
   if (output_format(path) == OutputFormat::bvh)
     return bvh_bytes(character, settings, baked.outcome,
                      exported.root_joint < 0 ? exported.clip : exported.on_hips, diagnostics);
+  if (output_format(path) == OutputFormat::fbx)
+    return fbx_bytes(path, character, settings, exported, diagnostics);
   const Character& shown = exported.with_root ? *exported.with_root : character;
   auto extras = extras_of(character, settings, baked.outcome, exported);
   if (!extras) return extras.error();
@@ -142,9 +164,11 @@ Status prepare_files(const Character& character, const BakeSettings& settings, B
 
 /// Settings that do not go together.
 Status check_combinations(const BakeSettings& settings) {
-  const bool to_bvh = std::any_of(settings.outputs.begin(), settings.outputs.end(), [](const fs::path& path) {
-    return output_format(path) == OutputFormat::bvh;
-  });
+  const auto writes = [&](OutputFormat format) {
+    return std::any_of(settings.outputs.begin(), settings.outputs.end(),
+                       [format](const fs::path& path) { return output_format(path) == format; });
+  };
+  const bool to_bvh = writes(OutputFormat::bvh);
   if (settings.smooth_hz && *settings.smooth_hz >= 0.5 * settings.simulation.fps)
     return usage_error(fmt::format("--smooth {} is not below half of the {} frames per second",
                                    *settings.smooth_hz, settings.simulation.fps),
@@ -152,6 +176,9 @@ Status check_combinations(const BakeSettings& settings) {
   if (settings.additive && to_bvh)
     return usage_error("--additive is for glTF: a BVH cannot say what its motion is added to",
                        "leave the .bvh away, or write it by a bake of its own");
+  if (settings.additive && writes(OutputFormat::fbx))
+    return usage_error("--additive is for glTF: engines that read FBX make a clip additive on import",
+                       "leave --additive away, and give the engine frame 0 as base pose");
   if (settings.append && to_bvh)
     return usage_error("--append is for glTF: a BVH holds one motion", "leave the .bvh away");
   return Done{};

@@ -36,6 +36,7 @@ std::optional<OutputFormat> output_format(const fs::path& path) {
   if (extension == ".glb") return OutputFormat::glb;
   if (extension == ".gltf") return OutputFormat::gltf;
   if (extension == ".bvh") return OutputFormat::bvh;
+  if (extension == ".fbx") return OutputFormat::fbx;
   return std::nullopt;
 }
 
@@ -66,7 +67,7 @@ Status check_outputs(const std::string& character, const BakeSettings& settings)
   std::vector<fs::path> paths = settings.outputs;
   for (const fs::path& path : settings.outputs)
     if (!output_format(path))
-      return usage_error(path, "unknown output format", "let the name end in .glb, .gltf or .bvh");
+      return usage_error(path, "unknown output format", "let the name end in .glb, .gltf, .fbx or .bvh");
   if (!settings.sheet.empty()) {
     if (const Status status = check_picture_name(settings.sheet); !status) return status.error();
     paths.push_back(settings.sheet);

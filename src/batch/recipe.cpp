@@ -31,6 +31,7 @@ const std::vector<std::string> kMatrixKeys = {"name", "characters", "outputs", "
 const std::vector<std::string> kJitterKeys = {"direction-deg", "point-m", "strength-percent"};
 const std::vector<std::pair<std::string, OutputKind>> kOutputWords = {{"glb", OutputKind::glb},
                                                                       {"gltf", OutputKind::gltf},
+                                                                      {"fbx", OutputKind::fbx},
                                                                       {"bvh", OutputKind::bvh},
                                                                       {"sheet", OutputKind::sheet},
                                                                       {"report", OutputKind::report}};
@@ -518,6 +519,8 @@ std::string_view extension(OutputKind kind) {
       return ".glb";
     case OutputKind::gltf:
       return ".gltf";
+    case OutputKind::fbx:
+      return ".fbx";
     case OutputKind::bvh:
       return ".bvh";
     case OutputKind::sheet:

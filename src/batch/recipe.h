@@ -17,7 +17,7 @@
 namespace ukemi {
 
 /// Files that a reaction may have.
-enum class OutputKind { glb, gltf, bvh, sheet, report };
+enum class OutputKind { glb, gltf, fbx, bvh, sheet, report };
 std::string_view extension(OutputKind kind);  // ".glb", ".png" of the sheet, ".json" of the report
 
 /// What a recipe says of one setting: texts as Setting::set takes them, and where it says so.

@@ -23,7 +23,7 @@ format = 1
 ## Files beside this one; * and ? stand for parts of a name. "mannequin" is the program's own character.
 characters = ["mannequin"]
 
-## What each reaction gets: glb gltf bvh, a sheet (contact sheet, .png), a report (.json).
+## What each reaction gets: glb gltf fbx bvh, a sheet (contact sheet, .png), a report (.json).
 outputs = ["glb", "sheet", "report"]
 
 ## Name of the files and clips of matrices: any setting in braces, {variation}, {character}. The default has

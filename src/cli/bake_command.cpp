@@ -27,8 +27,8 @@ struct BakeRequest {
 void declare_out(Options& options, BakeRequest& request) {
   BakeSettings& settings = request.settings;
   options.group("out");
-  options.paths("-o,--output", settings.outputs, "the clip, as .glb, .gltf or .bvh");
-  options.flag("--append", settings.append, "add the clip to those of a glTF output that exists");
+  options.paths("-o,--output", settings.outputs, "the clip, as .glb, .gltf, .fbx or .bvh");
+  options.flag("--append", settings.append, "add the clip to those of a glTF or FBX output that exists");
   options.path("--sheet", settings.sheet, "contact sheet, as .png");
   options.path("--preview", settings.preview, "moving picture, as .webp (640x360, 30 a second)");
   options.custom(
@@ -46,7 +46,7 @@ Status check(const BakeRequest& request) {
   if (settings.outputs.empty() && settings.sheet.empty() && settings.preview.empty() &&
       settings.report.empty() && !request.json)
     return usage_error("nothing to write",
-                       "add -o hit.glb (or .gltf, .bvh), --sheet, --preview, --report or --json");
+                       "add -o hit.glb (or .gltf, .fbx, .bvh), --sheet, --preview, --report or --json");
   return Done{};
 }
 

@@ -108,7 +108,7 @@ TEST_F(Refusal, OfAFileThatIsNoHumanoid) {
 TEST_F(Refusal, OfOutputsThatCannotBe) {
   fs::create_directory(folder / "folder.glb");
   expect_refused({"bake", "mannequin"}, kMustChange, "nothing to write");
-  expect_refused({"bake", "mannequin", "-o", "a.fbx"}, kMustChange, "a.fbx: unknown output format");
+  expect_refused({"bake", "mannequin", "-o", "a.obj"}, kMustChange, "a.obj: unknown output format");
   expect_refused({"bake", "mannequin", "--sheet", "a.gif"}, kMustChange, "a.gif: unknown picture format");
   expect_refused({"bake", "mannequin", "-o", "a.glb", "-o", "./a.glb"}, kMustChange, "named twice");
   expect_refused({"bake", "mannequin", "-o", "folder.glb"}, kCannotWrite, "is a directory");

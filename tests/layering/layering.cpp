@@ -14,9 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // In the order of the pipeline.
-constexpr std::string_view kRooms[] = {
-    "base",   "load",   "bones", "humanoid", "restrict", "body",  "physics", "simulate", "behave", "rise",
-    "export", "render", "clip",  "judge",    "prepare",  "bake",  "check",   "study",    "batch",  "review", "cli"};
+constexpr std::string_view kRooms[] = {"base",    "load",     "bones",  "humanoid", "restrict", "body",
+                                       "physics", "simulate", "behave", "rise",     "export",   "fbx",
+                                       "render",  "clip",     "judge",  "prepare",  "bake",     "check",
+                                       "study",   "batch",    "review", "cli"};
 
 // Rooms that never include each other.
 const std::vector<std::vector<std::string_view>> kApart = {{"export", "render"},
@@ -42,6 +43,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"meshoptimizer", {"load"}},
       {"ode/", {"physics"}},
       {"openssl/", {"base"}},
+      {"zlib.h", {"fbx"}},
       {"png.h", {"render"}},
       {"webp/", {"render"}},
       {"ft2build.h", {"render"}},

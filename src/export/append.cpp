@@ -1,4 +1,4 @@
-#include "bake/append.h"
+#include "export/append.h"
 
 #include <fmt/format.h>
 
