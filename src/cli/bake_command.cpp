@@ -6,6 +6,7 @@
 
 #include "bake/bake.h"
 #include "bake/report.h"
+#include "bake/response.h"
 #include "base/errors.h"
 #include "cli/commands.h"
 #include "cli/console.h"
@@ -62,6 +63,17 @@ Result<BakedFile> search_and_bake(const BakeRequest& request, Diagnostics& diagn
   return bake_file(request.character, request.settings, diagnostics, run);
 }
 
+/// "stepped 3 times, ends standing".
+std::string outcome_text(const BakedClip& baked) {
+  const Response response = response_of(baked);
+  const std::size_t steps = response.steps.size();
+  const std::string how =
+      response.outcome == Outcome::stepped
+          ? fmt::format("stepped {}", steps == 1 ? "once" : fmt::format("{} times", steps))
+          : std::string(name(response.outcome));
+  return fmt::format("{}, ends {}", how, name(response.end_pose));
+}
+
 std::string summary(const BakeRequest& request, const BakedFile& baked) {
   const BakedClip& outcome = baked.outcome;
   const LimitFigures& limits = outcome.limits;
@@ -70,8 +82,8 @@ std::string summary(const BakeRequest& request, const BakedFile& baked) {
       fmt::format("{} hit from {}: {:.1f} N s on {:.2f} m, {:.1f} kg\n", name(outcome.prepared.scene.target),
                   request.settings.from.text, figures.momentum_n_s, outcome.prepared.humanoid.height_m,
                   outcome.prepared.body.mass_kg);
-  text += fmt::format("{:.2f} s, {} frames at {} fps; {}\n", outcome.timeline.clip.duration_s(),
-                      outcome.timeline.clip.frames.size(), outcome.timeline.clip.fps,
+  text += fmt::format("{:.2f} s, {} frames at {} fps; {}, {}\n", outcome.timeline.clip.duration_s(),
+                      outcome.timeline.clip.frames.size(), outcome.timeline.clip.fps, outcome_text(outcome),
                       figures.rest_time_s ? fmt::format("at rest after {:.2f} s", *figures.rest_time_s)
                                           : std::string("not at rest"));
   text += fmt::format("range of motion{}: {} of {} samples over 1 degree outside, at most {:.2f} degrees{}\n",
