@@ -1,12 +1,14 @@
 #include "bake/response.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "behave/ground.h"
 #include "behave/legs.h"
+#include "body/on_ground.h"
 
 namespace ukemi {
 namespace {
@@ -103,6 +105,16 @@ double foot_slide(const ArticulatedBody& body, const Trajectory& trajectory, dou
   for (const BodySide side : kSides)
     most = std::max(most, slide_of(Leg(body, trajectory.frames.front(), side), trajectory, until_s));
   return most;
+}
+
+std::string outcome_text(const Response& response) {
+  const std::size_t steps = response.steps.size();
+  std::string how(name(response.outcome));
+  if (response.outcome == Outcome::stepped)
+    how += steps == 1 ? std::string(" once") : fmt::format(" {} times", steps);
+  std::string pose(name(response.end_pose));
+  std::replace(pose.begin(), pose.end(), '_', ' ');
+  return fmt::format("{}, ends {}", how, pose);
 }
 
 Response response_of(const BakedClip& outcome) {

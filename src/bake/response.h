@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -34,6 +35,9 @@ FinalPose final_pose_of(const BodyPose& start, const BodyPose& end);
 /// Largest way of the least moved corner of a sole while it stands on the floor for more than 50 ms, from 50
 /// ms after it touched, up to `until_s`, m.
 double foot_slide(const ArticulatedBody& body, const Trajectory& trajectory, double until_s);
+
+/// "stepped 3 times, ends standing".
+std::string outcome_text(const Response& response);
 
 Response response_of(const BakedClip& outcome);
 

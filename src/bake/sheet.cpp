@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 
+#include "bake/response.h"
 #include "base/character_path.h"
 #include "base/errors.h"
 #include "base/numbers.h"
@@ -72,6 +73,7 @@ std::vector<Fact> facts_of(const BakeSettings& settings, const BakedClip& outcom
     facts.push_back({"outside the human range", fmt::format("up to {:.1f}°", outcome.human.excess_max_deg)});
   if (figures.first_ground_contact_s)
     facts.push_back({"first ground contact", fmt::format("{:.2f} s", *figures.first_ground_contact_s)});
+  facts.push_back({"outcome", outcome_text(response_of(outcome))});
   facts.push_back(
       {"at rest", figures.rest_time_s ? fmt::format("{:.2f} s", *figures.rest_time_s) : "not yet"});
   return facts;
@@ -220,6 +222,7 @@ Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const B
   SheetOptions options;
   options.theme = settings.theme;
   options.overlays.trail = true;
+  options.overlays.prints = !outcome.behaviour.steps.empty();
   const auto picture = render_sheet(shot_of(character, settings, outcome, clip), options);
   if (!picture) return picture.error();
   return encode_png(*picture);

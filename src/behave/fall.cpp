@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "behave/ground.h"
+#include "body/on_ground.h"
 
 namespace ukemi {
 namespace {

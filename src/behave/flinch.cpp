@@ -1,6 +1,6 @@
 #include "behave/flinch.h"
 
-#include "behave/ground.h"
+#include "body/on_ground.h"
 
 namespace ukemi {
 

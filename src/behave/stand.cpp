@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "behave/ground.h"
+#include "body/on_ground.h"
 
 namespace ukemi {
 namespace {

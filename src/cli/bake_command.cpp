@@ -63,17 +63,6 @@ Result<BakedFile> search_and_bake(const BakeRequest& request, Diagnostics& diagn
   return bake_file(request.character, request.settings, diagnostics, run);
 }
 
-/// "stepped 3 times, ends standing".
-std::string outcome_text(const BakedClip& baked) {
-  const Response response = response_of(baked);
-  const std::size_t steps = response.steps.size();
-  const std::string how =
-      response.outcome == Outcome::stepped
-          ? fmt::format("stepped {}", steps == 1 ? "once" : fmt::format("{} times", steps))
-          : std::string(name(response.outcome));
-  return fmt::format("{}, ends {}", how, name(response.end_pose));
-}
-
 std::string summary(const BakeRequest& request, const BakedFile& baked) {
   const BakedClip& outcome = baked.outcome;
   const LimitFigures& limits = outcome.limits;
@@ -83,7 +72,8 @@ std::string summary(const BakeRequest& request, const BakedFile& baked) {
                   request.settings.from.text, figures.momentum_n_s, outcome.prepared.humanoid.height_m,
                   outcome.prepared.body.mass_kg);
   text += fmt::format("{:.2f} s, {} frames at {} fps; {}, {}\n", outcome.timeline.clip.duration_s(),
-                      outcome.timeline.clip.frames.size(), outcome.timeline.clip.fps, outcome_text(outcome),
+                      outcome.timeline.clip.frames.size(), outcome.timeline.clip.fps,
+                      outcome_text(response_of(outcome)),
                       figures.rest_time_s ? fmt::format("at rest after {:.2f} s", *figures.rest_time_s)
                                           : std::string("not at rest"));
   text += fmt::format("range of motion{}: {} of {} samples over 1 degree outside, at most {:.2f} degrees{}\n",

@@ -44,7 +44,10 @@ void declare_look(Options& options, RenderSettings& settings) {
       "--size", "SIZE", take_parsed(settings.size, parse_picture_size),
       "thumbnail, screen, a4, a3 (300 pixels an inch) or WIDTHxHEIGHT in pixels [default: a sheet by "
       "its cells, a moving picture 640x360]");
-  options.flag("--shapes", settings.overlays.shapes, "the simulated segments' shapes over the mesh");
+  options.flag("--shapes", settings.overlays.shapes,
+               "the simulated segments' shapes over the mesh; on the floor foot prints (left blue, right "
+               "orange), what the body "
+               "stands on (green), its centre of mass (dot) and its capture point (ring)");
   options.flag("--axes", settings.overlays.axes, "each joint's axes: forward red, up green, right blue");
   options.flag("--rom", settings.overlays.ranges,
                "each joint's range of motion as a cone: amber near its edge, red outside");

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "body/on_ground.h"
 #include "judge/criteria.h"
 
 namespace ukemi {
@@ -228,36 +229,6 @@ Criterion planted_feet(const Evidence& e) {
   return judged(9, "planted feet stay", {{"slide_m", slide, {0.0, 0.04}}});
 }
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-/// Counter-clockwise convex hull (Andrew's monotone chain).
-std::vector<Vec2> hull_of(std::vector<Vec2> points) {
-  std::sort(points.begin(), points.end(),
-            [](const Vec2& a, const Vec2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
-  std::vector<Vec2> hull;
-  for (int pass = 0; pass < 2; ++pass) {
-    const std::size_t start = hull.size();
-    for (const Vec2& p : points) {
-      while (hull.size() >= start + 2 && cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0)
-        hull.pop_back();
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
-  return hull;
-}
-
-/// How far outside of the nearest edges' lines a point lies; below 0 inside.
-double outside_of(const std::vector<Vec2>& hull, const Vec2& point) {
-  double outside = -kUnlimited;
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const Vec2 edge = hull[(i + 1) % hull.size()] - hull[i];
-    if (edge.norm() > 0.0) outside = std::max(outside, -cross(edge, point - hull[i]) / edge.norm());
-  }
-  return outside;
-}
-
 /// Corners of the soles on the floor, along x and z.
 std::vector<Vec2> soles_on_floor(const BodyCourse& t, int frame) {
   std::vector<Vec2> corners;
@@ -293,7 +264,7 @@ Criterion pressure(const Evidence& e) {
     const std::vector<Vec2> soles = soles_on_floor(t, f);
     if (soles.empty()) continue;
     const Vec3 point = com[f] - acceleration[f] * (com[f].y() / lift);
-    borne += outside_of(hull_of(soles), Vec2(point.x(), point.z())) < kAroundFeet;
+    borne += beyond(convex_hull(soles), Vec2(point.x(), point.z())) < kAroundFeet;
   }
   if (all == 0) return not_applicable(10, kName);
   return judged(10, kName, {{"share_of_frames", static_cast<double>(borne) / all, {0.85, 1.0}}});

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/errors.h"
-#include "behave/ground.h"
+#include "body/on_ground.h"
 #include "humanoid/rotations.h"
 #include "prepare/impact.h"
 #include "prepare/start.h"

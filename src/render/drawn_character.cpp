@@ -158,6 +158,9 @@ DrawnCharacter::DrawnCharacter(const Shot& shot, const Overlays& overlays)
   shapes_ = can_show_shapes && (overlays.shapes || !mesh_);
   overlays_.axes = overlays.axes && can_show_shapes;
   overlays_.ranges = overlays.ranges && can_show_shapes && shot.range != nullptr;
+  overlays_.shapes = overlays.shapes && can_show_shapes;
+  overlays_.prints = (overlays.prints || overlays.shapes) && can_show_shapes;
+  if (overlays_.prints) floor_marks_ = FloorMarks(shot);
   if (!overlays.trail) return;
   for (std::size_t frame = 0; frame < shot.clip->frames.size(); ++frame)
     hips_.push_back(world_from_file_ * world(static_cast<int>(frame))[joint_nodes_.front()].translation());
@@ -213,6 +216,8 @@ FrameGeometry DrawnCharacter::geometry(int frame) const {
   FrameGeometry result{body(frame)};
   if (mesh_ && shapes_) add_shapes(result.overlay, frame, kOverlayAlpha);
   add_props(result.solid, frame);
+  if (overlays_.prints) floor_marks_.add_prints(result.solid, frame);
+  if (overlays_.shapes) floor_marks_.add_support(result.solid, shot_, frame);
   if (overlays_.trail) add_trail(result.solid, hips_, frame);
   if (overlays_.axes) add_joint_axes(result.overlay, shot_, frame);
   if (overlays_.ranges) add_range_cones(result.overlay, shot_, frame);

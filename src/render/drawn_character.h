@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "render/balance.h"
 #include "render/geometry.h"
 #include "render/render.h"
 
@@ -47,6 +48,7 @@ class DrawnCharacter {
   bool mesh_ = false;
   bool shapes_ = false;
   Overlays overlays_;
+  FloorMarks floor_marks_;  // where prints are drawn
   std::vector<Vec3> hips_;  // per frame, where the trail is drawn
 };
 

@@ -11,9 +11,9 @@
 #include "base/character.h"
 #include "base/result.h"
 #include "body/body.h"
+#include "body/trajectory.h"
 #include "humanoid/humanoid.h"
 #include "restrict/range_of_motion.h"
-#include "body/trajectory.h"
 
 namespace ukemi {
 
@@ -52,12 +52,14 @@ struct Shot {
   std::vector<std::string> notes;  // lines under them
 };
 
-/// What is drawn over the figure. Shapes, axes and ranges need the shot's segments.
+/// What is drawn over the figure. Shapes, axes, ranges and prints need the shot's segments.
 struct Overlays {
-  bool shapes = false;  // the simulated segments, see-through
+  bool shapes =
+      false;  // the simulated segments, see-through; support, centre of mass and capture point on the floor
   bool axes = false;    // of every joint's segment: x forward red, y up green, z to the right blue
   bool ranges = false;  // each joint's range of motion as a cone: amber near its edge, red outside
   bool trail = false;   // the way of the hips
+  bool prints = false;  // where feet have stood
 };
 
 /// Where the camera stands, seen from the figure's first frame, radians.

@@ -1,4 +1,4 @@
-#include "behave/ground.h"
+#include "body/on_ground.h"
 
 #include <gtest/gtest.h>
 
