@@ -74,6 +74,8 @@ Json figures_of_report(const Json& report) {
   for (const char* key : {"rest_time_s", "joint_separation_max_m", "energy_gain_max_j",
                           "floor_penetration_max_m", "self_penetration_max_m"})
     json[key] = value_at(report, {"simulation", key});
+  for (const char* key : {"outcome", "end_pose", "score"}) json[key] = value_at(report, {"response", key});
+  if (const Json steps = value_at(report, {"response", "steps"}); steps.is_array()) json["steps"] = steps.size();
   json["settled"] = report.contains("simulation") ? Json(!json["rest_time_s"].is_null()) : Json(nullptr);
   for (const char* key : {"duration_s", "frames", "keys"}) json[key] = value_at(report, {"clip", key});
   return json;

@@ -32,6 +32,8 @@ export function sideOf(reaction) {
 
 export const targetOf = setting('hit');
 export const strengthOf = (reaction) => setting('preset')(reaction) ?? setting('scene')(reaction);
+export const outcomeOf = figure('outcome'); // stood, stepped, fell
+export const endPoseOf = (reaction) => figure('end_pose')(reaction)?.replace('_', ' ') ?? null;
 export const excessOf = figure('excess_max_deg');
 
 /// What a card warns of, worst first.
@@ -59,6 +61,8 @@ export const FILTERS = [
   { key: 'hit', label: 'Target', all: 'All', values: (r) => [targetOf(r)] },
   { key: 'from', label: 'From', all: 'All', values: (r) => [sideOf(r)] },
   { key: 'strength', label: 'Strength', all: 'All', values: (r) => [strengthOf(r)] },
+  { key: 'outcome', label: 'Outcome', all: 'All', values: (r) => [outcomeOf(r)] },
+  { key: 'ends', label: 'Ends', all: 'All', values: (r) => [endPoseOf(r)] },
   { key: 'result', label: 'Result', all: 'All', values: (r) => Object.keys(RESULTS).filter((name) => RESULTS[name](r)) },
 ];
 
@@ -80,6 +84,8 @@ export const ORDERS = [
   { key: 'direction', label: 'Direction', of: (r) => directionOf(r)?.azimuth ?? null },
   { key: 'strength', label: 'Strength, N s', of: figure('momentum_n_s'), down: true },
   { key: 'excess', label: 'Excess', of: excessOf, down: true },
+  { key: 'score', label: 'Score', of: figure('score') },
+  { key: 'steps', label: 'Steps', of: figure('steps'), down: true },
   { key: 'travel', label: 'Travel', of: figure('travel_m'), down: true },
   { key: 'rest', label: 'Time to rest', of: figure('rest_time_s'), down: true },
   { key: 'duration', label: 'Duration', of: figure('duration_s'), down: true },
@@ -102,7 +108,7 @@ export function inOrder(reactions, orderKey, down) {
 export function matches(reaction, filters, text) {
   for (const { key, values } of FILTERS) if (filters[key] && !values(reaction).includes(filters[key])) return false;
   if (!text) return true;
-  const all = `${reaction.character} ${reaction.name} ${targetOf(reaction) ?? ''} ${strengthOf(reaction) ?? ''} ${startOf(reaction) ?? ''}`.toLowerCase();
+  const all = `${reaction.character} ${reaction.name} ${targetOf(reaction) ?? ''} ${strengthOf(reaction) ?? ''} ${outcomeOf(reaction) ?? ''} ${endPoseOf(reaction) ?? ''} ${startOf(reaction) ?? ''}`.toLowerCase();
   return text.toLowerCase().split(/\s+/).every((word) => all.includes(word));
 }
 
@@ -131,6 +137,9 @@ export function figuresOf(reaction) {
     ['Samples over 1°', known(over) ? (known(f.samples) ? `${over} of ${f.samples}` : String(over)) : '–', over > 0],
     ['Worst joint', f.worst_joint ?? '–', false],
     ['Excess of the clip', degrees(f.clip_excess_max_deg), f.clip_excess_max_deg > 1],
+    ['Outcome', [f.outcome, known(f.end_pose) && `ends ${endPoseOf(reaction)}`].filter(Boolean).join(', ') || '–', false],
+    ['Steps', known(f.steps) ? String(f.steps) : '–', false],
+    ['Score', text(2, '')(f.score), f.score < 0.7],
     ['Start', startOf(reaction) ?? '–', false],
     ['Momentum', newtonSeconds(f.momentum_n_s), false],
     ['Travel', metres(f.travel_m), false],
