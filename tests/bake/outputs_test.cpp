@@ -35,12 +35,13 @@ TEST_F(Outputs, AreKnownByTheirExtension) {
   EXPECT_EQ(output_format("a.glb"), OutputFormat::glb);
   EXPECT_EQ(output_format("a.b.GLTF"), OutputFormat::gltf);
   EXPECT_EQ(output_format("a.bvh"), OutputFormat::bvh);
-  EXPECT_FALSE(output_format("a.fbx"));
+  EXPECT_EQ(output_format("a.fbx"), OutputFormat::fbx);
+  EXPECT_FALSE(output_format("a.obj"));
   EXPECT_FALSE(output_format("glb"));
 }
 
 TEST_F(Outputs, OfUnknownFormatAreRefused) {
-  EXPECT_EQ(refused({folder / "a.fbx"}).kind, ErrorKind::usage);
+  EXPECT_EQ(refused({folder / "a.obj"}).kind, ErrorKind::usage);
   BakeSettings settings;
   settings.sheet = folder / "a.jpg";
   EXPECT_EQ(check_outputs("hero.glb", settings).error().fix, "let the name end in .png");

@@ -49,6 +49,11 @@ async function filtersAndOrder(page) {
   await page.getByLabel('From', { exact: true }).selectOption('left');
   check('filter: side', (await names(page)).every((name) => name.endsWith('left')));
   await page.getByLabel('From', { exact: true }).selectOption('');
+  const outcomes = await page.evaluate(() => globalThis.ukemi.page.shown.map((one) => one.figures.outcome));
+  check('outcomes are told', outcomes.every((one) => ['stood', 'stepped', 'fell'].includes(one)), outcomes.join(' '));
+  await page.getByLabel('Outcome', { exact: true }).selectOption(outcomes[0]);
+  equal('filter: outcome', (await names(page)).length, outcomes.filter((one) => one === outcomes[0]).length);
+  await page.getByLabel('Outcome', { exact: true }).selectOption('');
   await page.getByLabel('Search', { exact: true }).fill('chest front');
   equal('search', await names(page), ['chest_front']);
   await page.getByLabel('Search', { exact: true }).fill('nothing like it');
