@@ -179,9 +179,21 @@ Status check_combinations(const BakeSettings& settings) {
   if (settings.additive && writes(OutputFormat::fbx))
     return usage_error("--additive is for glTF: engines that read FBX make a clip additive on import",
                        "leave --additive away, and give the engine frame 0 as base pose");
+  if (settings.knockout && behaviour_settings(settings).kind == Behaviour::limp)
+    return usage_error("--knockout-at is for a body that lives: a limp one is out from the start",
+                       "leave one of --knockout-at and --behaviour limp away");
   if (settings.append && to_bvh)
     return usage_error("--append is for glTF: a BVH holds one motion", "leave the .bvh away");
   return Done{};
+}
+
+/// The length that nobody asked for was too short.
+void warn_of_unrest(const BakeSettings& settings, const BakedClip& baked, Diagnostics& diagnostics) {
+  const bool hit = baked.prepared.scene.kind != SceneKind::none;
+  if (settings.simulation.duration_s || !settings.until_rest || !hit || baked.figures.rest_time_s) return;
+  diagnostics.warn(
+      "", fmt::format("the clip ends after {:.1f} s, before the body is at rest: give a longer --duration",
+                      simulated_s(settings)));
 }
 
 }  // namespace
@@ -200,6 +212,7 @@ Result<BakedClip> bake(const Character& character, const BakeSettings& settings,
   const double load_s = watch.lap();
   auto found = search_take(character, settings, *prepared, run, diagnostics);
   if (!found) return found.error();
+  warn_of_unrest(settings, *found, diagnostics);
   found->timings_s.load = load_s;
   found->timings_s.total = watch.total();
   return found;

@@ -125,7 +125,7 @@ Json impact_json(const Character& character, const BakeSettings& settings, const
   const bool fall = scene.kind == SceneKind::fall;
   const bool ball =
       scene.kind == SceneKind::ball || scene.kind == SceneKind::slope || scene.kind == SceneKind::box;
-  const bool push = scene.kind == SceneKind::push;
+  const bool push = is_push(scene.kind);
   json["ball_mass_kg"] = ball ? Json(scene.ball_mass_kg) : Json(nullptr);
   json["ball_speed_m_s"] = ball ? Json(scene.ball_speed_m_s) : Json(nullptr);
   json["ball_radius_m"] = ball ? Json(scene.ball_radius_m) : Json(nullptr);
@@ -141,6 +141,24 @@ Json impact_json(const Character& character, const BakeSettings& settings, const
 Json touch_json(const std::optional<TouchDown>& touch) {
   if (!touch) return nullptr;
   return {{"time_s", touch->time_s}, {"speed_m_s", touch->speed_m_s}};
+}
+
+Json first_contact_json(const std::optional<TouchDown>& touch) {
+  Json json = touch_json(touch);
+  if (touch) json["segment"] = name(touch->segment);
+  return json;
+}
+
+Json get_up_json(const BakedClip& outcome) {
+  if (!outcome.get_up) return nullptr;
+  const double impact_s = outcome.timeline.impact_s;
+  Json phases = Json::array();
+  for (const GetUpPhase& phase : outcome.get_up->phases)
+    phases.push_back({{"name", phase.name}, {"time_s", phase.time_s + impact_s}});
+  return {{"begins_s", outcome.get_up->begins_s + impact_s},
+          {"stands_s", outcome.get_up->stands_s + impact_s},
+          {"route", outcome.get_up->route},
+          {"phases", std::move(phases)}};
 }
 
 Json steps_json(const std::vector<StepTaken>& steps) {
@@ -163,16 +181,16 @@ Json response_json(const BakedClip& outcome) {
   json["end_pose"] = name(response.end_pose);
   json["steps"] = steps_json(response.steps);
   json["fall_begins_s"] = or_null(response.fall_begins_s);
-  json["head_contact"] = touch_json(response.head);
-  json["pelvis_contact"] = touch_json(response.pelvis);
-  json["first_hand_contact"] = touch_json(response.hand);
+  json["knocked_out_s"] = or_null(response.knocked_out_s);
+  json["first_contact"] = first_contact_json(response.contacts.first);
+  json["head_contact"] = touch_json(response.contacts.head);
+  json["pelvis_contact"] = touch_json(response.contacts.pelvis);
+  json["first_hand_contact"] = touch_json(response.contacts.hand);
+  json["first_knee_contact"] = touch_json(response.contacts.knee);
   json["foot_slide_max_m"] = response.foot_slide_max_m;
   json["muscle_torque_max_share"] = muscles ? Json(figures.muscle_share_max) : Json(nullptr);
   json["muscle_work_j"] = muscles ? Json(figures.muscle_work_j) : Json(nullptr);
-  json["get_up"] = outcome.get_up ? Json{{"begins_s", outcome.get_up->begins_s + outcome.timeline.impact_s},
-                                         {"stands_s", outcome.get_up->stands_s + outcome.timeline.impact_s},
-                                         {"route", outcome.get_up->route}}
-                                  : Json(nullptr);
+  json["get_up"] = get_up_json(outcome);
   json["travel_m"] = numbers(response.travel_m);
   json["turn_deg"] = response.turn_deg;
   json["delivered_n_s"] = figures.delivered_n_s;

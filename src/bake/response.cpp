@@ -78,26 +78,20 @@ std::string_view name(Outcome outcome) {
   return kNames[static_cast<int>(outcome)];
 }
 
-std::string_view name(FinalPose pose) {
-  constexpr std::string_view kNames[] = {"standing", "kneeling",  "seated",    "supine",
-                                         "prone",    "left_side", "right_side"};
-  return kNames[static_cast<int>(pose)];
-}
-
-FinalPose final_pose_of(const BodyPose& start, const BodyPose& end) {
+EndPose final_pose_of(const BodyPose& start, const BodyPose& end) {
   const Rigid& pelvis = end[index(Segment::pelvis)];
   const Quat& chest = end[index(Segment::chest)].rotation;
   const double height = pelvis.translation.y() / start[index(Segment::pelvis)].translation.y();
   const double upright = (chest * Vec3::UnitY()).y();
-  if (height > kStandingShare && upright > 0.3) return FinalPose::standing;
+  if (height > kStandingShare && upright > 0.3) return EndPose::standing;
   const double knee =
       std::min(end[index(Segment::shank_l)].translation.y(), end[index(Segment::shank_r)].translation.y()) /
       start[index(Segment::pelvis)].translation.y();
-  if (upright > 0.6 && height > 0.35 && knee < 0.2) return FinalPose::kneeling;
-  if (upright > 0.5) return FinalPose::seated;
+  if (upright > 0.6 && height > 0.35 && knee < 0.2) return EndPose::kneeling;
+  if (upright > 0.5) return EndPose::seated;
   const double front = (chest * Vec3::UnitX()).y();
-  if (std::abs(front) > 0.6) return front > 0.0 ? FinalPose::supine : FinalPose::prone;
-  return (chest * Vec3::UnitZ()).y() < 0.0 ? FinalPose::right_side : FinalPose::left_side;
+  if (std::abs(front) > 0.6) return front > 0.0 ? EndPose::supine : EndPose::prone;
+  return (chest * Vec3::UnitZ()).y() < 0.0 ? EndPose::right_side : EndPose::left_side;
 }
 
 double foot_slide(const ArticulatedBody& body, const Trajectory& trajectory, double until_s) {
@@ -117,16 +111,24 @@ std::string outcome_text(const Response& response) {
   return fmt::format("{}, ends {}", how, pose);
 }
 
+FirstContacts first_contacts(const SimulationFigures& figures, const ControllerReport& behaviour) {
+  const auto touched = [&](Segment s) { return figures.touch_down[index(s)]; };
+  FirstContacts contacts;
+  for (int s = 0; s < kSegmentCount; ++s)
+    if (s != index(Segment::foot_l) && s != index(Segment::foot_r))
+      contacts.first = earlier(contacts.first, touched(segment_at(s)));
+  contacts.hand = earlier(touched(Segment::hand_l), touched(Segment::hand_r));
+  contacts.knee = behaviour.fall.knee;
+  contacts.pelvis = touched(Segment::pelvis);
+  contacts.head = touched(Segment::head);
+  return contacts;
+}
+
 Response response_of(const BakedClip& outcome) {
   const SimulationFigures& figures = outcome.figures;
   const ControllerReport& report = outcome.behaviour;
   const Trajectory& trajectory = outcome.timeline.trajectory;
   const auto first = static_cast<std::size_t>(std::lround(outcome.timeline.impact_s * trajectory.fps));
-  const auto touched = [&](Segment s) {
-    auto touch = figures.touch_down[index(s)];
-    if (touch) touch->time_s += outcome.timeline.impact_s;
-    return touch;
-  };
   Response response;
   response.behaviour = outcome.prepared.behaviour.kind;
   response.steps = report.steps;
@@ -135,15 +137,17 @@ Response response_of(const BakedClip& outcome) {
     if (step.contact_s) *step.contact_s += outcome.timeline.impact_s;
   }
   if (report.fall_begins_s) response.fall_begins_s = outcome.timeline.impact_s + *report.fall_begins_s;
-  response.head = touched(Segment::head);
-  response.pelvis = touched(Segment::pelvis);
-  response.hand = earlier(touched(Segment::hand_l), touched(Segment::hand_r));
+  if (report.knocked_out_s) response.knocked_out_s = outcome.timeline.impact_s + *report.knocked_out_s;
+  response.contacts = first_contacts(figures, report);
+  FirstContacts& c = response.contacts;
+  for (std::optional<TouchDown>* touch : {&c.first, &c.hand, &c.knee, &c.pelvis, &c.head})
+    if (*touch) (*touch)->time_s += outcome.timeline.impact_s;
   const BodyPose& start = trajectory.frames[std::min(first, trajectory.frames.size() - 1)];
   const BodyPose& end = trajectory.frames.back();
   response.end_pose = final_pose_of(outcome.prepared.start.state.segments, end);
-  response.outcome = response.end_pose != FinalPose::standing || response.fall_begins_s ? Outcome::fell
-                     : response.steps.empty()                                           ? Outcome::stood
-                                                                                        : Outcome::stepped;
+  response.outcome = response.end_pose != EndPose::standing || response.fall_begins_s ? Outcome::fell
+                     : response.steps.empty()                                         ? Outcome::stood
+                                                                                      : Outcome::stepped;
   response.foot_slide_max_m =
       foot_slide(outcome.prepared.body, trajectory,
                  response.fall_begins_s.value_or(std::numeric_limits<double>::infinity()));

@@ -7,30 +7,37 @@
 #include <vector>
 
 #include "bake/baked.h"
+#include "behave/lying.h"
 
 namespace ukemi {
 
 enum class Outcome { stood, stepped, fell };
-enum class FinalPose { standing, kneeling, seated, supine, prone, left_side, right_side };
 std::string_view name(Behaviour behaviour);
 std::string_view name(Outcome outcome);
-std::string_view name(FinalPose pose);
+
+/// What came down on the floor when, seconds after the blow. The knee: of a living body that fell.
+struct FirstContacts {
+  std::optional<TouchDown> first;  // of all but the feet
+  std::optional<TouchDown> hand, knee, pelvis, head;
+};
+FirstContacts first_contacts(const SimulationFigures& figures, const ControllerReport& behaviour);
 
 /// Times are the clip's, from its beginning.
 struct Response {
   Behaviour behaviour = Behaviour::alert;
   Outcome outcome = Outcome::stood;
-  FinalPose end_pose = FinalPose::standing;
+  EndPose end_pose = EndPose::standing;
   std::vector<StepTaken> steps;
   std::optional<double> fall_begins_s;
-  std::optional<TouchDown> head, pelvis, hand;  // first on the floor
+  std::optional<double> knocked_out_s;
+  FirstContacts contacts;
   double foot_slide_max_m = 0.0;  // of a sole's least moved corner while it stands, until the body falls
   Vec3 travel_m = Vec3::Zero();   // of the pelvis
   double turn_deg = 0.0;          // of the pelvis, to the left
 };
 
 /// What the last frame of a motion that began upright shows.
-FinalPose final_pose_of(const BodyPose& start, const BodyPose& end);
+EndPose final_pose_of(const BodyPose& start, const BodyPose& end);
 
 /// Largest way of the least moved corner of a sole while it stands on the floor for more than 50 ms, from 50
 /// ms after it touched, up to `until_s`, m.

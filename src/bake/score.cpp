@@ -12,6 +12,7 @@ double human_score(const Character& character, const BakeSettings& settings, con
   blow.impact_s = timeline.impact_s;
   blow.momentum_n_s = baked.figures.momentum_n_s;
   blow.hit = baked.prepared.scene.target;
+  blow.knock_out = baked.behaviour.knocked_out_s.has_value();
   if (settings.recover_s) blow.to_s = timeline.clip.duration_s() - *settings.recover_s;
   return judge(motion, blow).score;
 }

@@ -33,8 +33,12 @@ std::string blow_text(const BakeSettings& settings, const Scene& scene) {
   const std::string what = preset_in_use(settings).value_or(std::string(name(scene.kind)));
   switch (scene.kind) {
     case SceneKind::push:
+    case SceneKind::trip:
+    case SceneKind::slip:
+    case SceneKind::pull:
       return fmt::format("{}: {:.0f} N for {:.2f} s", what, scene.push_force_n, scene.push_duration_s);
     case SceneKind::impulse:
+    case SceneKind::explosion:
       return fmt::format("{}: {:.1f} N s", what, scene.impulse_n_s);
     case SceneKind::fall:
       return fmt::format("fall: from {} m, tipped at {} m/s", scene.fall_height_m, scene.tip_speed_m_s);

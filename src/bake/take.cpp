@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "bake/response.h"
 #include "bake/score.h"
 #include "bake/stopwatch.h"
 #include "base/errors.h"
@@ -62,6 +63,12 @@ void end_in_start_pose(const BodyPose& start, const ControllerReport& behaviour,
   trajectory.frames.back() = start;
 }
 
+/// Seconds in which a body that lies and lives is seen to breathe.
+double breath_s(const Prepared& prepared, const ControllerReport& behaviour) {
+  constexpr double kBreath_s = 1.0;
+  return prepared.behaviour.breathes && behaviour.fall.settled_s ? kBreath_s : 0.0;
+}
+
 Status check_clip_size(const Character& character, const BakeSettings& settings,
                        const Trajectory& trajectory) {
   const double frames = static_cast<double>(trajectory.frames.size()) +
@@ -86,11 +93,24 @@ void add_step_marks(const std::vector<StepTaken>& steps, double end_s, std::vect
   }
 }
 
+void add_contact_marks(const FirstContacts& contacts, double end_s, std::vector<Mark>& marks) {
+  const auto add = [&](const char* name, const std::optional<TouchDown>& touch) {
+    if (touch && touch->time_s <= end_s) marks.push_back({name, touch->time_s});
+  };
+  add("hand_contact", contacts.hand);
+  add("knee_contact", contacts.knee);
+  add("pelvis_contact", contacts.pelvis);
+  add("head_contact", contacts.head);
+}
+
 /// What the simulation saw, as far as the clip reaches.
 void add_marks(const SimulationFigures& figures, const ControllerReport& behaviour, Clip& clip) {
   const double end_s = clip.duration_s();
   if (figures.first_ground_contact_s && *figures.first_ground_contact_s <= end_s)
     clip.marks.push_back({"first_ground_contact", *figures.first_ground_contact_s});
+  add_contact_marks(first_contacts(figures, behaviour), end_s, clip.marks);
+  if (behaviour.knocked_out_s && *behaviour.knocked_out_s <= end_s)
+    clip.marks.push_back({"knocked_out", *behaviour.knocked_out_s});
   add_step_marks(behaviour.steps, end_s, clip.marks);
   const auto& fall = behaviour.fall_begins_s;
   if (fall && *fall <= end_s) clip.marks.push_back({"fall_begins", *fall});
@@ -144,7 +164,8 @@ Result<BakedClip> clip_of_take(const Character& character, const BakeSettings& s
       settings.get_up_s && lying_of(prepared.body, trajectory.frames.back()) != Lying::upright;
   const auto& rest_s = outcome.figures.rest_time_s;
   if ((settings.until_rest && blow) || gets_up)
-    trim_still_tail(trajectory, rest_s, gets_up ? *settings.get_up_s : settings.hold_s);
+    trim_still_tail(trajectory, rest_s,
+                    gets_up ? *settings.get_up_s : settings.hold_s + breath_s(prepared, outcome.behaviour));
   if (gets_up && rest_s) hold_last_frame(*rest_s + *settings.get_up_s, trajectory);
   if (prepared.behaviour.kind != Behaviour::limp)
     end_in_start_pose(prepared.start.state.segments, outcome.behaviour, trajectory);

@@ -18,7 +18,8 @@ bool beyond_feet(const Senses& senses) {
   });
 }
 
-/// What a share of a goal asks for.
+}  // namespace
+
 JointGoal weakened(JointGoal goal, double share) {
   goal.feed_forward_n_m *= share;
   goal.stiffness_n_m_rad *= share;
@@ -27,8 +28,6 @@ JointGoal weakened(JointGoal goal, double share) {
   goal.most_n_m *= share;
   return goal;
 }
-
-}  // namespace
 
 Alert::Alert(const ArticulatedBody& body, const RangeOfMotion& range, const MuscleStrength& strength,
              const BodyPose& home, double gravity, const StandSettings& standing, const FallSettings& falling,
@@ -74,6 +73,12 @@ void Alert::release_swinging_leg(const Senses& senses) {
   for (const Joint joint : {Joint::hip_r, Joint::knee_r, Joint::ankle_r})
     falling_.fade_in(on(*swinging_, joint), senses.time_s);
   swinging_.reset();
+}
+
+bool Alert::has_stepped() const {
+  const std::vector<StepTaken>& steps = standing_.steps();
+  return std::any_of(steps.begin(), steps.end(),
+                     [](const StepTaken& step) { return step.contact_s.has_value(); });
 }
 
 bool Alert::standing_over(double time_s) const {

@@ -6,6 +6,9 @@
 
 namespace ukemi {
 
+/// What a share of a goal asks for.
+JointGoal weakened(JointGoal goal, double share);
+
 class Alert : public Controller {
  public:
   Alert(const ArticulatedBody& body, const RangeOfMotion& range, const MuscleStrength& strength,
@@ -18,6 +21,13 @@ class Alert : public Controller {
   bool done() const override;
   bool hopeless() const override { return must_stand_ && standing_.lost_s(); }
   ControllerReport report() const override;
+
+  /// A foot has been set down in a step.
+  bool has_stepped() const;
+  /// Balance is lost.
+  bool falls() const { return standing_.lost_s().has_value(); }
+  /// The falling body is down.
+  bool has_landed() const { return falling_.landed(); }
 
  private:
   void begin_fall(const Senses& senses);

@@ -22,8 +22,12 @@ double momentum_of(const Scene& scene) {
     case SceneKind::box:
       return scene.ball_mass_kg * scene.ball_speed_m_s;
     case SceneKind::push:
+    case SceneKind::trip:
+    case SceneKind::slip:
+    case SceneKind::pull:
       return scene.push_force_n * scene.push_duration_s;
     case SceneKind::impulse:
+    case SceneKind::explosion:
       return scene.impulse_n_s;
     case SceneKind::fall:
     case SceneKind::none:
@@ -87,9 +91,13 @@ MakeController behaviour_of(const ArticulatedBody& body, const RangeOfMotion& ra
   FallSettings fall = behaviour.kind == Behaviour::dazed ? FallSettings::dazed() : FallSettings::alert();
   fall.arms_free = behaviour.arms_free;
   fall.seed = behaviour.seed;
+  fall.breathes = behaviour.breathes;
   return [&body, &range, &strength, &home, stand, fall, gravity = settings.gravity,
-          must_stand = behaviour.must_stand] {
-    return std::make_unique<Alert>(body, range, strength, home, gravity, stand, fall, must_stand);
+          tone = ToneSettings{tone_of(settings), settings.tone_fade_s}, knockout = behaviour.knockout,
+          must_stand = behaviour.must_stand]() -> std::unique_ptr<Controller> {
+    auto alive = std::make_unique<Alert>(body, range, strength, home, gravity, stand, fall, must_stand);
+    if (!knockout) return alive;
+    return std::make_unique<KnockedOut>(std::move(alive), body, *knockout, tone);
   };
 }
 

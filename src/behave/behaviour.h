@@ -1,6 +1,7 @@
 // What a body does after the blow: lives, is dazed, or is limp.
 #pragma once
 
+#include "behave/knocked_out.h"
 #include "behave/stand.h"
 #include "body/muscles.h"
 #include "simulate/simulate.h"
@@ -33,7 +34,9 @@ struct BehaviourSettings {
   PerSide<bool> arms_free{true, true};
   std::optional<UnderWay> under_way;  // a start from motion
   Choice choice;
-  bool must_stand = false;  // the run ends when balance is lost
+  std::optional<Knockout> knockout;  // lives until then; not of a limp body
+  bool breathes = true;              // once it lies
+  bool must_stand = false;           // the run ends when balance is lost
 };
 
 /// The behaviour of a body that stands in `home` when the blow of `scene` comes. `home`, `body`, `range` and

@@ -145,8 +145,8 @@ bool is_any(Segment s, Segment right) { return s == right || s == mirror_of(righ
 void Falling::feel(const Senses& senses) {
   for (const SegmentContact& contact : senses.contacts) {
     if (contact.with != SegmentContact::With::floor) continue;
-    const FirstTouch touch{contact.segment, senses.time_s, approach(before_, contact)};
-    const auto note = [&touch](bool applies, std::optional<FirstTouch>& where) {
+    const TouchDown touch{contact.segment, senses.time_s, approach(before_, contact)};
+    const auto note = [&touch](bool applies, std::optional<TouchDown>& where) {
       if (applies && !where) where = touch;
     };
     const Segment s = contact.segment;
@@ -259,13 +259,6 @@ void Falling::watch_calm(const Senses& senses, double h) {
 ControllerReport Falling::report() const {
   ControllerReport report;
   report.fall = report_;
-  const auto note = [&report](const char* what, const std::optional<FirstTouch>& touch) {
-    if (touch) report.events.push_back({what, touch->time_s});
-  };
-  note("hand_contact", report_.hand);
-  note("knee_contact", report_.knee);
-  note("pelvis_contact", report_.pelvis);
-  note("head_contact", report_.head);
   if (report_.settled_s) report.events.push_back({"settled", *report_.settled_s});
   return report;
 }

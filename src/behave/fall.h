@@ -40,6 +40,7 @@ class Falling : public Controller {
   /// Share of a joint's goals that is in force, 0 to 1: what drove the joint before is to keep the rest.
   double faded(Joint joint, double time_s) const;
   bool begun() const { return report_.begins_s.has_value(); }
+  bool landed() const { return report_.landed_s.has_value(); }
 
   void start(const Senses& senses) override;
   void observe(const Senses& senses, double h) override;

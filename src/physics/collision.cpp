@@ -161,12 +161,14 @@ void Collision::touch(const Contacts& contacts, const ContactSettings& settings)
     const Pair& pair = pairs_[point.pair];
     const dBodyID a = dGeomGetBody(point.a);
     const dBodyID b = dGeomGetBody(point.b);
+    const bool sole = pair.kind == PairKind::floor && is_foot(colliders_[pair.b].segment);
+    if (sole && settings.sole_friction) surface.mu = *settings.sole_friction;
     if (settings.sparse_friction) {
       if (pair.kind == PairKind::floor) {
         // Two rows at the first two contacts of a pair hold it; the others only carry.
         if (nth >= kFullFrictionContacts)
           surface.mu = 0.0;
-        else if (settings.firm_soles && is_foot(colliders_[pair.b].segment))
+        else if (settings.firm_soles && sole && !settings.sole_friction)
           surface.mu = dInfinity;
       } else {
         // One row along the slip.

@@ -100,7 +100,8 @@ void Physics::step(double time_s, double h, const Goals& goals, const Contacts& 
   all_rows_.assign(model_.joints().size(), false);
   for (int attempt = 0; attempt < kTries; ++attempt) {
     add_forces(time_s, h, goals);
-    collision_.touch(contacts, {settings_.sparse_friction, 0.8, goals.firm_soles});
+    collision_.touch(contacts,
+                     {settings_.sparse_friction, 0.8, goals.firm_soles, scene_.sole_friction(time_s)});
     dWorldStep(world_.id(), h);
     dJointGroupEmpty(world_.contacts());
     check_speeds(time_s);

@@ -12,6 +12,7 @@ namespace {
 constexpr double kTouchDepth = 0.0002;  // m: what hits starts touching
 constexpr double kReach = 3.0;          // m: where the search for the first touch starts
 constexpr double kRampThickness = 0.04;
+constexpr double kSlippery = 0.05;  // friction of soles on an oiled floor, about
 constexpr double kLongestRamp = 3.0;
 
 void set_pose(dGeomID geom, const Vec3& at, const Quat& q) {
@@ -40,7 +41,13 @@ double height_on_floor(dGeomID probe) {
 
 SceneProps::SceneProps(OdeWorld& world, Model& model, Collision& collision, const Scene& scene,
                        double gravity)
-    : world_(world), model_(model), collision_(collision), scene_(scene), gravity_(gravity) {}
+    : world_(world), model_(model), collision_(collision), scene_(scene), gravity_(gravity) {
+  if (scene_.loads.empty()) scene_.loads = {{scene_.target, scene_.direction}};
+}
+
+std::optional<double> SceneProps::sole_friction(double time_s) const {
+  return time_s < scene_.slippery_s ? std::optional(kSlippery) : std::nullopt;
+}
 
 void SceneProps::begin(Diagnostics& diagnostics) {
   impact_point_ = vec3(dBodyGetPosition(target().id));
@@ -51,12 +58,16 @@ void SceneProps::begin(Diagnostics& diagnostics) {
     case SceneKind::slope:
       return begin_slope(diagnostics);
     case SceneKind::impulse:
+    case SceneKind::explosion:
       return begin_impulse();
     case SceneKind::fall:
       return begin_fall();
     case SceneKind::none:
       return;
     case SceneKind::push:
+    case SceneKind::trip:
+    case SceneKind::slip:
+    case SceneKind::pull:
       momentum_ = scene_.push_force_n * scene_.push_duration_s;
   }
 }
@@ -175,9 +186,12 @@ void SceneProps::begin_slope(Diagnostics& diagnostics) {
 }
 
 void SceneProps::begin_impulse() {
-  RigidState state = read_state(target().id);
-  state.linear_velocity += scene_.impulse_n_s / target().mass_kg * scene_.direction;
-  write_state(target().id, state);
+  for (const Load& load : scene_.loads) {
+    const ModelBody& body = body_of(load.segment);
+    RigidState state = read_state(body.id);
+    state.linear_velocity += scene_.impulse_n_s / body.mass_kg * load.way;
+    write_state(body.id, state);
+  }
   momentum_ = scene_.impulse_n_s;
 }
 
@@ -206,17 +220,23 @@ void SceneProps::begin_fall() {
 
 void SceneProps::apply(double time_s) const {
   if (!pushing(time_s)) return;
-  const Vec3 force = scene_.push_force_n * scene_.direction;
-  dBodyAddForce(target().id, force.x(), force.y(), force.z());
+  for (const Load& load : scene_.loads) {
+    const Vec3 force = scene_.push_force_n * load.way;
+    dBodyAddForce(body_of(load.segment).id, force.x(), force.y(), force.z());
+  }
 }
 
 double SceneProps::work(double time_s, double h) const {
   if (!pushing(time_s)) return 0.0;
-  return h * scene_.push_force_n * std::max(0.0, scene_.direction.dot(vec3(dBodyGetLinearVel(target().id))));
+  double work = 0.0;
+  for (const Load& load : scene_.loads)
+    work += h * scene_.push_force_n *
+            std::max(0.0, load.way.dot(vec3(dBodyGetLinearVel(body_of(load.segment).id))));
+  return work;
 }
 
 double SceneProps::delivered_n_s(double time_s) const {
-  if (scene_.kind == SceneKind::push) return scene_.push_force_n * std::min(time_s, scene_.push_duration_s);
+  if (is_push(scene_.kind)) return scene_.push_force_n * std::min(time_s, scene_.push_duration_s);
   if (bodies_.empty()) return momentum_;
   return carried_ -
          inertias_.front().mass_kg * scene_.direction.dot(vec3(dBodyGetLinearVel(bodies_.front())));

@@ -25,6 +25,8 @@ class SceneProps {
   double work(double time_s, double h) const;
   /// Kinetic and potential energy of the props, J.
   double prop_energy() const;
+  /// The soles' friction, where it is not that of everything else.
+  std::optional<double> sole_friction(double time_s) const;
   bool is_blow() const { return scene_.kind != SceneKind::none; }
   double momentum_n_s() const { return momentum_; }
   /// What the body has received until `time_s`: what the missile has lost along the blow's way, N s.
@@ -56,10 +58,9 @@ class SceneProps {
   Vec3 aim(dGeomID probe, Diagnostics& diagnostics) const;
   void launch(dGeomID geom, const Vec3& at, const Vec3& velocity, const Vec3& angular_velocity,
               const Quat& rotation);
+  const ModelBody& body_of(Segment segment) const { return model_.bodies()[model_.body_of(segment)]; }
   const ModelBody& target() const { return model_.bodies()[model_.body_of(scene_.target)]; }
-  bool pushing(double time_s) const {
-    return scene_.kind == SceneKind::push && time_s < scene_.push_duration_s;
-  }
+  bool pushing(double time_s) const { return is_push(scene_.kind) && time_s < scene_.push_duration_s; }
 
   OdeWorld& world_;
   Model& model_;

@@ -11,13 +11,15 @@
 #include "base/files.h"
 #include "base/nearest.h"
 #include "base/numbers.h"
+#include "body/anthropometry.h"
 #include "prepare/settings.h"
 
 namespace ukemi {
 namespace {
 
 constexpr std::int64_t kPresetFormat = 1;
-const std::vector<std::string> kSceneNames = {"ball", "slope", "fall", "push", "impulse", "box", "none"};
+const std::vector<std::string> kSceneNames = {"ball", "slope", "fall", "push", "impulse",  "box",
+                                              "none", "trip",  "slip", "pull", "explosion"};
 
 Error preset_error(const std::string& file, const toml::source_region& where, std::string what,
                    std::string fix) {
@@ -37,13 +39,11 @@ class PresetReader {
     preset_.speed_m_s = required("speed_m_s");
     preset_.radius_m = required("radius_m");
     preset_.push_duration_s = optional("push_duration_s").value_or(preset_.push_duration_s);
+    preset_.distance_m = optional("distance_m").value_or(preset_.distance_m);
+    preset_.slippery_s = optional("slippery_s").value_or(preset_.slippery_s);
     read_scene();
-    if (const toml::node* node = table_.get("stylised")) {
-      if (const auto value = node->value_exact<bool>())
-        preset_.stylised = *value;
-      else
-        fail(*node, "'stylised' is not true or false", "write true or false");
-    }
+    read_flag("stylised", preset_.stylised);
+    read_flag("spread", preset_.spread);
     refuse_unknown_keys();
     if (error_) return *error_;
     return preset_;
@@ -71,6 +71,15 @@ class PresetReader {
     return optional(key).value_or(0.0);
   }
 
+  void read_flag(const char* key, bool& flag) {
+    const toml::node* node = table_.get(key);
+    if (!node) return;
+    if (const auto value = node->value_exact<bool>())
+      flag = *value;
+    else
+      fail(*node, fmt::format("'{}' is not true or false", key), "write true or false");
+  }
+
   void read_scene() {
     const toml::node* node = table_.get("scene");
     if (!node) return;
@@ -84,8 +93,9 @@ class PresetReader {
   }
 
   void refuse_unknown_keys() {
-    static const std::vector<std::string> known = {"scene",    "mass_kg",  "speed_m_s",
-                                                   "radius_m", "stylised", "push_duration_s"};
+    static const std::vector<std::string> known = {"scene",    "mass_kg",    "speed_m_s",
+                                                   "radius_m", "stylised",   "push_duration_s",
+                                                   "spread",   "distance_m", "slippery_s"};
     for (auto&& [key, node] : table_) {
       const std::string text(key.str());
       if (std::find(known.begin(), known.end(), text) == known.end())
@@ -147,6 +157,76 @@ Vec3 aim_offset(const Vec3& direction, const BakeSettings& settings) {
   return settings.aim_up_m * up + settings.aim_left_m * left;
 }
 
+/// Who takes what hits more than one segment: the trunk's neighbour, or both legs.
+Segment beside(Segment target) {
+  switch (target) {
+    case Segment::pelvis:
+    case Segment::chest:
+      return Segment::abdomen;
+    case Segment::abdomen:
+      return Segment::pelvis;
+    case Segment::thigh_l:
+    case Segment::thigh_r:
+    case Segment::shank_l:
+    case Segment::shank_r:
+    case Segment::foot_l:
+    case Segment::foot_r:
+      return mirror_of(target);
+    default:
+      return target;
+  }
+}
+
+bool is_leg(Segment s) { return s >= Segment::thigh_l && s <= Segment::foot_r; }
+
+/// The leg's foot, or the one that is higher.
+Segment caught_foot(Segment target, const BodyPose& start) {
+  if (is_leg(target)) return target;
+  const auto height = [&](Segment s) { return start[index(s)].translation.y(); };
+  return height(Segment::foot_l) > height(Segment::foot_r) ? Segment::foot_l : Segment::foot_r;
+}
+
+/// A blast from a point: every segment is pushed away from it by the area that it shows (a solid's grows with
+/// its mass to the power 2/3), less where it is farther.
+std::vector<Load> blown(const BodyPose& start, const Vec3& point, Sex sex) {
+  std::vector<Load> loads;
+  double sum = 0.0;
+  for (int s = 0; s < kSegmentCount; ++s) {
+    const Vec3 away = start[s].translation - point;
+    const double weight =
+        std::pow(segment_table(segment_at(s), sex).mass_fraction, 2.0 / 3.0) / std::max(away.norm(), 0.1);
+    loads.push_back({segment_at(s), weight * away.normalized()});
+    sum += weight;
+  }
+  for (Load& load : loads) load.way /= sum;
+  return loads;
+}
+
+void load_scene(const ImpactPreset& preset, Sex sex, const BodyPose& start, Scene& scene) {
+  switch (scene.kind) {
+    case SceneKind::trip:
+      scene.target = caught_foot(scene.target, start);
+      return;
+    case SceneKind::slip:
+      scene.direction = -scene.direction;
+      scene.slippery_s = preset.slippery_s;
+      scene.loads = {{Segment::foot_l, 0.5 * scene.direction}, {Segment::foot_r, 0.5 * scene.direction}};
+      return;
+    case SceneKind::pull:
+      scene.direction = -scene.direction;
+      return;
+    case SceneKind::explosion:
+      scene.loads =
+          blown(start, start[index(scene.target)].translation - preset.distance_m * scene.direction, sex);
+      return;
+    default:
+      break;
+  }
+  const Segment other = beside(scene.target);
+  if (preset.spread && other != scene.target && (is_push(scene.kind) || is_impulse(scene.kind)))
+    scene.loads = {{scene.target, 0.5 * scene.direction}, {other, 0.5 * scene.direction}};
+}
+
 Result<ImpactPreset> preset_named(const std::string& text) {
   static const auto presets = load_presets();  // read once
   if (!presets) return presets.error();
@@ -193,13 +273,13 @@ Result<SceneKind> parse_scene(std::string_view text) {
 
 std::string_view name(SceneKind scene) { return kSceneNames[static_cast<std::size_t>(scene)]; }
 
-Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelvis) {
+Result<Scene> scene_of(const BakeSettings& settings, const BodyPose& start) {
   const auto preset = preset_named(settings.preset);
   if (!preset) return preset.error();
   Scene scene;
   scene.kind = settings.scene.value_or(preset->scene);
   scene.target = settings.hit;
-  scene.direction = travel_direction(settings.from, world_from_pelvis);
+  scene.direction = travel_direction(settings.from, start[index(Segment::pelvis)].rotation);
   scene.ball_mass_kg = settings.ball_mass_kg.value_or(preset->mass_kg);
   scene.ball_speed_m_s = settings.strength * settings.ball_speed_m_s.value_or(preset->speed_m_s);
   scene.ball_radius_m = settings.ball_radius_m.value_or(preset->radius_m);
@@ -211,6 +291,7 @@ Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelv
   scene.tip_speed_m_s = settings.strength * settings.tip_speed_m_s;
   scene.aim_offset = aim_offset(scene.direction, settings);
   scene.slope_rad = radians(settings.slope_deg);
+  load_scene(*preset, settings.sex, start, scene);
   return scene;
 }
 

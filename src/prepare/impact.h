@@ -8,6 +8,7 @@
 
 #include "base/math.h"
 #include "base/result.h"
+#include "humanoid/humanoid.h"
 #include "prepare/direction.h"
 #include "simulate/simulate.h"
 
@@ -23,7 +24,10 @@ struct ImpactPreset {
   double speed_m_s = 0.0;
   double radius_m = 0.0;
   bool stylised = false;         // stronger than the real thing, for the eye
-  double push_duration_s = 0.2;  // used by a push
+  double push_duration_s = 0.2;  // used by a push, a pull, a trip, a slip
+  double distance_m = 3.0;       // explosion: from its point to the target
+  double slippery_s = 0.0;       // slip: the soles find little hold for so long
+  bool spread = false;           // half of it goes to the segment beside the target
 };
 
 /// The presets that come with the program, in the file's order.
@@ -41,10 +45,10 @@ Status check_preset(const std::string& name);
 Result<SceneKind> parse_scene(std::string_view text);
 std::string_view name(SceneKind scene);
 
-/// The blow of a bake: the preset's numbers, replaced by what the settings give. A push or an impulse without
-/// numbers of its own carries the ball's momentum. Errors: usage (unknown preset), input (presets
-/// file).
-Result<Scene> scene_of(const BakeSettings& settings, const Quat& world_from_pelvis);
+/// The blow of a bake on a body that is in `start`: the preset's numbers, replaced by what the settings give.
+/// A trip takes the foot that is in the air where the target is no leg. A push or an impulse without numbers
+/// of its own carries the ball's momentum. Errors: usage (unknown preset), input (presets file).
+Result<Scene> scene_of(const BakeSettings& settings, const BodyPose& start);
 
 /// The preset whose numbers are used, or nothing where the settings replace them all.
 std::optional<std::string> preset_in_use(const BakeSettings& settings);

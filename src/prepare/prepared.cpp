@@ -112,7 +112,7 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
   prepared.strength = *strength;
   prepared.behaviour = behaviour_settings(settings);
   find_home(character, settings, prepared);
-  auto scene = scene_of(settings, prepared.start.segments[index(Segment::pelvis)].rotation);
+  auto scene = scene_of(settings, prepared.start.segments);
   if (!scene) return scene.error();
   prepared.scene = *scene;
   return prepared;

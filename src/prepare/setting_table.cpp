@@ -275,7 +275,7 @@ Settings hit_settings() {
           "from the front, 90 = from the character's left [-360 to 360, -90 to 90]",
           [](auto& s) -> auto& { return s.from; }, parse_direction),
       text<S>(
-          "preset", "NAME", "punch kick medicine-ball football tackle shot",
+          "preset", "NAME", "punch kick medicine-ball football tackle shot trip slip pull explosion",
           [](auto& s) -> auto& { return s.preset; }, check_preset),
       with_unset(number<S>(
                      "ball-mass", "KG", Range{0.001, 10000.0}, "mass of the ball or box",
@@ -300,9 +300,12 @@ Settings hit_settings() {
           [](auto& s) -> auto& { return s.aim_left_m; }),
       with_unset(
           parsed<S>(
-              "scene", "ball|slope|fall|push|impulse|box|none",
+              "scene", "ball|slope|fall|push|impulse|box|none|trip|slip|pull|explosion",
               "what happens: a ball flies in, a ball rolls down a ramp, the body is tipped over or "
-              "dropped, a force acts for a time, momentum is given at once, a box slides in, nothing happens",
+              "dropped, a force acts for a time, momentum is given at once, a box slides in, nothing "
+              "happens, a "
+              "foot is caught, the feet slip away to where --from says, he is pulled there, all of him is "
+              "blown away",
               [](auto& s) -> auto& { return s.scene; }, parse_scene),
           "the preset's"),
       number<S>(
@@ -354,6 +357,42 @@ Settings start_settings() {
   };
 }
 
+constexpr std::array<std::pair<std::string_view, Knockout::At>, 3> kKnockouts = {
+    {{"blow", Knockout::At::blow}, {"step", Knockout::At::step}, {"landing", Knockout::At::landing}}};
+
+Result<Knockout> parse_knockout(const std::string& text) {
+  for (const auto& [word, at] : kKnockouts)
+    if (word == text) return Knockout{at, 0.0};
+  const auto time_s = number_in(text);
+  if (!time_s || !Range{0.0, 60.0}.contains(*time_s))
+    return usage_error(fmt::format("'{}' is neither a time from 0 to 60 nor a word", text),
+                       "give seconds after the blow, or blow, step, landing");
+  return Knockout{Knockout::At::time, *time_s};
+}
+
+Setting knockout_setting() {
+  Setting setting;
+  setting.name = "knockout-at";
+  setting.value = "S|blow|step|landing";
+  setting.help =
+      "the lights go out: alive until S after the blow, from the blow on, when the first step is down or "
+      "balance lost, or when the fall has landed; limp from then on [0 to 60]";
+  setting.unset = "never";
+  setting.set = [](BakeSettings& settings, const std::string& text) -> Status {
+    const auto knockout = parse_knockout(text);
+    if (!knockout) return knockout.error();
+    settings.knockout = *knockout;
+    return Done{};
+  };
+  setting.get = [](const BakeSettings& settings) -> std::vector<std::string> {
+    if (!settings.knockout) return {};
+    for (const auto& [word, at] : kKnockouts)
+      if (at == settings.knockout->at) return {std::string(word)};
+    return {fmt::format("{}", settings.knockout->time_s)};
+  };
+  return setting;
+}
+
 Settings behaviour_settings_table() {
   using S = BakeSettings;
   return {
@@ -399,6 +438,10 @@ Settings behaviour_settings_table() {
               "latency", "S", Range{0.0, 2.0}, "time from the blow to the first reaction of the balance",
               [](auto& s) -> auto& { return s.latency_s; }),
           "0.10, dazed 0.20"),
+      knockout_setting(),
+      on_off<S>(
+          "breath", "who lies and lives breathes, for 1 s before the clip ends",
+          [](auto& s) -> auto& { return s.breathes; }, "lies still, and the clip ends with --hold"),
       bare(with_unset(number<S>(
                           "get-up", "S", Range{0.0, 60.0},
                           "gets up from the floor into the start pose, after lying still so long",

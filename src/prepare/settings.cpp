@@ -23,6 +23,8 @@ BehaviourSettings behaviour_settings(const BakeSettings& settings) {
   behaviour.kind = settings.behaviour.value_or(fixed ? Behaviour::limp : Behaviour::alert);
   behaviour.most_steps = static_cast<int>(settings.most_steps);
   behaviour.latency_s = settings.latency_s;
+  if (behaviour.kind != Behaviour::limp) behaviour.knockout = settings.knockout;
+  behaviour.breathes = settings.breathes;
   behaviour.muscle = settings.muscle;
   const HoldingArms arms = settings.arms;
   behaviour.arms_free = {arms != HoldingArms::left && arms != HoldingArms::both,

@@ -54,9 +54,11 @@ struct BakeSettings {
   std::optional<double> search;        // trials at most; unless given: 5 with an outcome, else 1
   bool assist = false;                 // a force from outside may help towards the outcome
   HoldingArms arms = HoldingArms::none;
-  double muscle = 1.0;              // strength, of a healthy adult's
-  std::optional<double> latency_s;  // unless given: the behaviour's
-  std::optional<double> get_up_s;   // gets up after lying so long; unless given: stays down
+  double muscle = 1.0;               // strength, of a healthy adult's
+  std::optional<Knockout> knockout;  // alive until then
+  bool breathes = true;              // who lies and lives
+  std::optional<double> latency_s;   // unless given: the behaviour's
+  std::optional<double> get_up_s;    // gets up after lying so long; unless given: stays down
   GetUpStyle get_up_style = GetUpStyle::plain;
   double seed = 0;  // varies stance, latency, arms and steps; 0: the mean of all
   // method

@@ -56,6 +56,9 @@ int frame_at(const Clip& clip, double time_s) {
   return static_cast<int>(std::clamp(std::lround(time_s * clip.fps), 0L, last));
 }
 
+/// A foot that leaves the ground or stands on it again: there may be many.
+bool is_step(const std::string& name) { return name.starts_with("lift_") || name.starts_with("contact_"); }
+
 /// Frames that the sheet must show, most wanted first.
 std::vector<int> wanted_frames(const Clip& clip) {
   std::vector<int> frames{0};
@@ -65,7 +68,8 @@ std::vector<int> wanted_frames(const Clip& clip) {
   };
   add_marks([](const std::string& name) { return name == "impact"; });
   frames.push_back(static_cast<int>(clip.frames.size()) - 1);
-  add_marks([](const std::string& name) { return name != "impact"; });
+  add_marks([](const std::string& name) { return name != "impact" && !is_step(name); });
+  add_marks(is_step);
   return frames;
 }
 

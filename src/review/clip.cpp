@@ -246,9 +246,17 @@ Json rom_json(const Character& character, const Humanoid& humanoid, const Clip& 
   return json;
 }
 
-Json marks_json(const Told& told, double duration_s) {
+/// Those that a bake wrote into the clip; else what its report tells.
+std::vector<Mark> marks_of(const Animation& animation, const Told& told) {
+  std::vector<Mark> marks = marks_in_extras(animation.extras_json);
+  if (marks.empty()) return told.marks;
+  for (Mark& mark : marks) std::replace(mark.name.begin(), mark.name.end(), '_', ' ');
+  return marks;
+}
+
+Json marks_json(const std::vector<Mark>& marks, double duration_s) {
   Json json = Json::array();
-  for (const Mark& mark : told.marks)
+  for (const Mark& mark : marks)
     if (mark.time_s <= duration_s) json.push_back({{"name", mark.name}, {"time_s", mark.time_s}});
   return json;
 }
@@ -316,7 +324,7 @@ Result<ReviewClip> review_clip(const fs::path& folder, const ReviewSource& sourc
   const double floor_m = told.floor_m ? *told.floor_m : floor_of(*character, *humanoid, sampled.frames);
   json["floor_m"] = floor_m;
   json["root"] = humanoid->root;
-  json["marks"] = marks_json(told, result.duration_s);
+  json["marks"] = marks_json(marks_of(animation, told), result.duration_s);
   const BodyPose first = segments_of(character->skeleton, *humanoid, sampled.frames.front());
   const Vec3 point = impact_point(told, first, humanoid->height_m);
   const Vec3 forward = first[index(Segment::pelvis)].rotation * Vec3::UnitX();

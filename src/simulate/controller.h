@@ -27,11 +27,11 @@ struct BehaviourEvent {
   double time_s = 0.0;
 };
 
-/// The first time that a part of the body met the floor in a fall.
-struct FirstTouch {
+/// The first time that a part of the body met the floor.
+struct TouchDown {
   Segment segment = Segment::pelvis;
   double time_s = 0.0;
-  double speed_m_s = 0.0;  // of approach, of the point that touched
+  double speed_m_s = 0.0;  // of the point that touched, towards the floor, just before
 };
 
 /// How a body came down. Nothing of it before the fall.
@@ -39,7 +39,7 @@ struct FallReport {
   std::optional<double> begins_s;   // protection began
   std::optional<double> landed_s;   // the body is down
   std::optional<double> settled_s;  // and lies
-  std::optional<FirstTouch> first, hand, knee, pelvis, head;
+  std::optional<TouchDown> first, hand, knee, pelvis, head;
   std::string end_pose;  // kneeling, seated, supine, prone, left_side, right_side
 };
 
@@ -47,6 +47,7 @@ struct FallReport {
 struct ControllerReport {
   std::vector<StepTaken> steps;
   std::optional<double> fall_begins_s;  // balance was lost
+  std::optional<double> knocked_out_s;  // from then on nobody was there
   std::vector<BehaviourEvent> events;
   FallReport fall;
 };

@@ -108,7 +108,7 @@ void Recorder::touches(const Senses& senses) {
     if (!foot && !figures_.first_ground_contact_s) figures_.first_ground_contact_s = senses.time_s;
     const Vec3 velocity =
         before_->velocity[s] + before_->angular_velocity[s].cross(contact.place - before_->centre[s]);
-    figures_.touch_down[s] = TouchDown{senses.time_s, std::max(0.0, -velocity.y())};
+    figures_.touch_down[s] = TouchDown{contact.segment, senses.time_s, std::max(0.0, -velocity.y())};
   }
   before_ = senses;
 }

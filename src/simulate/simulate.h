@@ -51,12 +51,6 @@ struct LimitFigures {
   bool projected = false;
 };
 
-/// When something first came down on the floor, and how fast.
-struct TouchDown {
-  double time_s = 0.0;
-  double speed_m_s = 0.0;  // of the point that touched, towards the floor, just before
-};
-
 struct SimulationFigures {
   long steps = 0;
   long rejected_steps = 0;

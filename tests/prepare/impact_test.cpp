@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "prepare/settings.h"
 #include "base/parse_segment.h"
+#include "prepare/settings.h"
 
 namespace ukemi {
 namespace {
@@ -63,8 +63,8 @@ TEST(Presets, OfTheProgramLoadInTheirOrder) {
     names.push_back(preset.name);
     EXPECT_GT(preset.mass_kg * preset.speed_m_s, 1.0) << preset.name;
   }
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"punch", "kick", "medicine-ball", "football", "tackle", "shot"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"punch", "kick", "medicine-ball", "football", "tackle", "shot",
+                                             "trip", "slip", "pull", "explosion"}));
 }
 
 struct BadPreset {
@@ -98,7 +98,7 @@ TEST(Scene, TakesThePresetAndWhatReplacesIt) {
   BakeSettings settings;
   settings.hit = Segment::head;
   settings.ball_speed_m_s = 9.0;
-  const auto scene = scene_of(settings, Quat::Identity());
+  const auto scene = scene_of(settings, BodyPose{});
   ASSERT_TRUE(scene) << scene.error().message();
   EXPECT_EQ(scene->kind, SceneKind::ball);
   EXPECT_EQ(scene->target, Segment::head);
@@ -115,7 +115,7 @@ TEST(Scene, EveryWayOfHittingCarriesTheSameMomentum) {
     BakeSettings settings;
     settings.preset = "punch";
     settings.scene = kind;
-    const auto scene = scene_of(settings, Quat::Identity());
+    const auto scene = scene_of(settings, BodyPose{});
     ASSERT_TRUE(scene);
     EXPECT_EQ(scene->kind, kind);
     EXPECT_NEAR(scene->ball_mass_kg * scene->ball_speed_m_s, 26.506, 1e-9);
@@ -124,10 +124,74 @@ TEST(Scene, EveryWayOfHittingCarriesTheSameMomentum) {
   }
 }
 
+/// Standing, feet apart, the left one lifted.
+BodyPose standing() {
+  BodyPose pose;
+  for (int s = 0; s < kSegmentCount; ++s) pose[s].translation = Vec3(0.0, 1.0, 0.02 * s);
+  pose[index(Segment::foot_l)].translation = Vec3(0.0, 0.2, -0.1);
+  pose[index(Segment::foot_r)].translation = Vec3(0.0, 0.1, 0.1);
+  return pose;
+}
+
+Scene scene(const std::string& preset, Segment hit) {
+  BakeSettings settings;
+  settings.preset = preset;
+  settings.hit = hit;
+  const auto scene = scene_of(settings, standing());
+  EXPECT_TRUE(scene);
+  return scene ? *scene : Scene{};
+}
+
+Vec3 sum_of(const Scene& scene) {
+  Vec3 sum = Vec3::Zero();
+  for (const Load& load : scene.loads) sum += load.way;
+  return sum;
+}
+
+TEST(Scene, OfATackleLoadsTwoSegmentsTogether) {
+  const Scene tackle = scene("tackle", Segment::pelvis);
+  ASSERT_EQ(tackle.loads.size(), 2u);
+  EXPECT_EQ(tackle.loads[0].segment, Segment::pelvis);
+  EXPECT_EQ(tackle.loads[1].segment, Segment::abdomen);
+  EXPECT_LT((sum_of(tackle) - tackle.direction).norm(), 1e-12);
+  EXPECT_EQ(scene("tackle", Segment::thigh_l).loads[1].segment, Segment::thigh_r);
+  EXPECT_TRUE(scene("tackle", Segment::head).loads.empty());
+  EXPECT_TRUE(scene("kick", Segment::pelvis).loads.empty());
+}
+
+TEST(Scene, OfATripTakesTheFootThatIsInTheAir) {
+  EXPECT_EQ(scene("trip", Segment::chest).target, Segment::foot_l);
+  EXPECT_EQ(scene("trip", Segment::shank_r).target, Segment::shank_r);
+}
+
+TEST(Scene, OfASlipOrAPullGoesToWhereTheBlowComesFrom) {
+  const Vec3 forward = Vec3::UnitX();  // the default is from the front
+  EXPECT_LT((scene("kick", Segment::chest).direction + forward).norm(), 1e-12);
+  EXPECT_LT((scene("pull", Segment::chest).direction - forward).norm(), 1e-12);
+  const Scene slip = scene("slip", Segment::chest);
+  ASSERT_EQ(slip.loads.size(), 2u);
+  EXPECT_LT((sum_of(slip) - forward).norm(), 1e-12);
+  EXPECT_GT(slip.slippery_s, 0.0);
+}
+
+TEST(Scene, OfAnExplosionBlowsEverySegmentAway) {
+  const Scene blast = scene("explosion", Segment::chest);
+  ASSERT_EQ(blast.loads.size(), static_cast<std::size_t>(kSegmentCount));
+  const BodyPose pose = standing();
+  const Vec3 point = pose[index(Segment::chest)].translation - 3.0 * blast.direction;
+  double shares = 0.0;
+  for (const Load& load : blast.loads) {
+    const Vec3 away = (pose[index(load.segment)].translation - point).normalized();
+    EXPECT_NEAR(load.way.normalized().dot(away), 1.0, 1e-9) << name(load.segment);
+    shares += load.way.norm();
+  }
+  EXPECT_NEAR(shares, 1.0, 1e-12);
+}
+
 TEST(Scene, RefusesUnknownWordsWithTheNearest) {
   BakeSettings settings;
   settings.preset = "puhcn";
-  EXPECT_EQ(scene_of(settings, Quat::Identity()).error().fix, "did you mean 'punch'?");
+  EXPECT_EQ(scene_of(settings, BodyPose{}).error().fix, "did you mean 'punch'?");
   EXPECT_EQ(parse_segment("chset").error().what, "unknown segment 'chset'");
   EXPECT_EQ(parse_segment("chset").error().fix, "did you mean 'chest'?");
   EXPECT_EQ(parse_scene("slop").error().what, "unknown scene 'slop'");
