@@ -60,6 +60,10 @@ std::string title_of(const Character& character, const BakeSettings& settings, c
   if (scene.kind == SceneKind::fall)
     return fmt::format("{}: falls away from {}", character.name, settings.from.text);
   if (scene.kind == SceneKind::none) return fmt::format("{}: unhit", character.name);
+  if (scene.kind == SceneKind::slip)
+    return fmt::format("{}: the feet slip away to {}", character.name, settings.from.text);
+  if (scene.kind == SceneKind::pull)
+    return fmt::format("{}: {} pulled to {}", character.name, name(scene.target), settings.from.text);
   return fmt::format("{}: {} hit from {}", character.name, name(scene.target), settings.from.text);
 }
 

@@ -108,7 +108,6 @@ void add_marks(const SimulationFigures& figures, const ControllerReport& behavio
   const double end_s = clip.duration_s();
   if (figures.first_ground_contact_s && *figures.first_ground_contact_s <= end_s)
     clip.marks.push_back({"first_ground_contact", *figures.first_ground_contact_s});
-  add_contact_marks(first_contacts(figures, behaviour), end_s, clip.marks);
   if (behaviour.knocked_out_s && *behaviour.knocked_out_s <= end_s)
     clip.marks.push_back({"knocked_out", *behaviour.knocked_out_s});
   add_step_marks(behaviour.steps, end_s, clip.marks);
@@ -134,6 +133,8 @@ Status make_timeline(const Character& character, const BakeSettings& settings, T
   outcome.timeline = timeline_of(actor, std::move(trajectory), prepared.reaction, outcome.resample_error);
   Clip& clip = outcome.timeline.clip;
   add_marks(outcome.figures, outcome.behaviour, clip);
+  if (prepared.behaviour.kind != Behaviour::limp)
+    add_contact_marks(first_contacts(outcome.figures, outcome.behaviour), clip.duration_s(), clip.marks);
   if (outcome.get_up) add_get_up_marks(*outcome.get_up, clip);
   if (settings.extra_bones_play) play_extra_bones(actor, clip);
   if (settings.smooth_hz) smooth(clip, *settings.smooth_hz);

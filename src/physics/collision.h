@@ -16,8 +16,8 @@ enum class PairKind { floor, prop, self };
 struct ContactSettings {
   bool sparse_friction = true;  // friction rows only where they matter, see touch()
   double friction = 0.8;
-  bool firm_soles = false;              // soles on the floor do not slip
-  std::optional<double> sole_friction;  // in place of both
+  bool firm_soles = false;                             // soles on the floor do not slip
+  std::optional<double> sole_friction = std::nullopt;  // in place of both
 };
 
 /// Contacts of one moment: plain data, so that a rejected step can use them again.

@@ -17,7 +17,8 @@ std::string another_value(const Setting& setting) {
   static const std::map<std::string_view, std::string> texts = {
       {"hit", "head"},       {"from", "30,10"},         {"preset", "kick"},    {"scene", "fall"},
       {"region", "diamond"}, {"active-file", "a.toml"}, {"rate", "fixed:480"}, {"map", "head=Head"},
-      {"unit", "0.0254"},    {"root", "Hips"},          {"pose", "guard"},     {"clip", "walk"}};
+      {"unit", "0.0254"},    {"root", "Hips"},          {"pose", "guard"},     {"clip", "walk"},
+      {"knockout-at", "0.3"}};
   const BakeSettings defaults;
   const auto values = setting.get(defaults);
   const std::string current = values.empty() ? "" : values.front();
@@ -44,6 +45,17 @@ TEST(Settings, ValuesGoInAndComeOutAgain) {
     EXPECT_NE(setting.get(BakeSettings()), std::vector<std::string>{value}) << setting.name;
     EXPECT_TRUE(check_values(settings));
   }
+}
+
+TEST(Settings, AKnockoutIsATimeOrAMoment) {
+  const auto setting = find_setting("knockout-at");
+  ASSERT_TRUE(setting);
+  BakeSettings settings;
+  for (const char* word : {"blow", "step", "landing", "0.25"}) {
+    ASSERT_TRUE((*setting)->set(settings, word)) << word;
+    EXPECT_EQ((*setting)->get(settings), std::vector<std::string>{word});
+  }
+  for (const char* bad : {"-1", "61", "never", ""}) EXPECT_FALSE((*setting)->set(settings, bad)) << bad;
 }
 
 TEST(Settings, EachHasOneNameAndTheGroupsAreContiguous) {
