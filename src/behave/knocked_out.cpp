@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "behave/ground.h"
+#include "body/on_ground.h"
 
 namespace ukemi {
 namespace {
