@@ -137,8 +137,6 @@ void expect_sound(const Fallen& man, const GetUp& get_up) {
   const Found found = look_at(man, get_up);
   EXPECT_LT(found.excess_deg, 1.0) << man.what;
   EXPECT_LT(found.slide_m, 0.010) << man.what;
-  std::printf("FOUND %s excess %.2f slide %.4f sunk %.4f balance %.4f step %.3f\n", man.what.c_str(),
-              found.excess_deg, found.slide_m, found.sunk_m, found.off_balance_m, found.step_m * get_up.fps);
   EXPECT_LT(found.sunk_m, 0.040) << man.what;
   EXPECT_LT(found.step_m, 6.5 / get_up.fps) << man.what;
   EXPECT_LT(from_standing(man.standing, get_up.frames.back()), 1e-9) << man.what;
