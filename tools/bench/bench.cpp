@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,43 +48,66 @@ namespace {
 struct Tally {
   std::string name;
   SimulationSettings settings;
-  double total_s = 0.0, step_s = 0.0;
+  double total_s = 0.0, step_s = 0.0, reference_s = 0.0;  // reference: of the same hits with fixed steps
+  int hits = 0;
   double excess_max_deg = 0.0, separation_max_m = 0.0, energy_gain_max_j = 0.0;
   long samples = 0, over_1deg = 0, steps = 0, rejected = 0;
   int failed = 0, settled = 0;
 };
 
-void add_hit(Tally& tally, const Prepared& prepared, const Scene& scene) {
-  step_seconds = 0.0;
+struct Run {
+  std::optional<SimulationResult> result;
+  double total_s = 0.0, step_s = 0.0;
+};
+
+Run timed(const Prepared& prepared, const Scene& scene, const SimulationSettings& settings, Behaviour kind) {
+  Run run;
+  BehaviourSettings behaviour = prepared.behaviour;
+  behaviour.kind = kind;
   Diagnostics diagnostics;
+  step_seconds = 0.0;
   const double before = thread_seconds();
-  const auto run = simulate(simulation_input(prepared, scene, tally.settings), diagnostics);
-  tally.total_s += thread_seconds() - before;
-  tally.step_s += step_seconds;
-  if (!run) {
+  auto result = simulate(simulation_input(prepared, scene, settings, behaviour), diagnostics);
+  run.total_s = thread_seconds() - before;
+  run.step_s = step_seconds;
+  if (result) run.result = std::move(*result);
+  return run;
+}
+
+void add_run(Tally& tally, const Run& run, double reference_s) {
+  ++tally.hits;
+  tally.total_s += run.total_s;
+  tally.step_s += run.step_s;
+  tally.reference_s += reference_s;
+  if (!run.result) {
     ++tally.failed;
     return;
   }
-  tally.samples += run->limits.samples;
-  tally.over_1deg += run->limits.over_1deg;
-  tally.steps += run->figures.steps;
-  tally.rejected += run->figures.rejected_steps;
-  tally.settled += run->figures.rest_time_s ? 1 : 0;
-  tally.excess_max_deg = std::max(tally.excess_max_deg, run->limits.excess_max_deg);
-  tally.separation_max_m = std::max(tally.separation_max_m, run->figures.joint_separation_max_m);
-  tally.energy_gain_max_j = std::max(tally.energy_gain_max_j, run->figures.energy_gain_max_j);
+  const SimulationResult& result = *run.result;
+  tally.samples += result.limits.samples;
+  tally.over_1deg += result.limits.over_1deg;
+  tally.steps += result.figures.steps;
+  tally.rejected += result.figures.rejected_steps;
+  tally.settled += result.figures.rest_time_s ? 1 : 0;
+  tally.excess_max_deg = std::max(tally.excess_max_deg, result.limits.excess_max_deg);
+  tally.separation_max_m = std::max(tally.separation_max_m, result.figures.joint_separation_max_m);
+  tally.energy_gain_max_j = std::max(tally.energy_gain_max_j, result.figures.energy_gain_max_j);
 }
 
-void print_tallies(const std::vector<Tally>& tallies, int hits) {
-  fmt::print("simulate, {} random hits of 3 s, CPU time of one thread\n", hits);
-  fmt::print("{:<16}{:>9}{:>8}{:>7}{:>7}{:>8}{:>9}{:>9}{:>8}{:>8}{:>8}\n", "", "ms/hit", "ratio", "step",
-             "other", "steps", "over 1", "max deg", "sep mm", "gain J", "rested");
+void print_tallies(const std::vector<Tally>& tallies) {
+  fmt::print("simulate 3 s, CPU time of one thread; ratio: to fixed steps on the same hits\n");
+  fmt::print("{:<16}{:>6}{:>9}{:>8}{:>7}{:>9}{:>8}{:>10}{:>9}{:>9}{:>8}{:>8}{:>8}\n", "", "hits", "ms/hit",
+             "ratio", "step", "us/step", "steps", "rejected", "over 1", "max deg", "sep mm", "gain J",
+             "rested");
   for (const Tally& t : tallies) {
-    fmt::print("{:<16}{:>9.2f}{:>8.3f}{:>6.1f}%{:>6.1f}%{:>8.0f}{:>9}{:>9.3f}{:>8.2f}{:>8.2f}{:>8}\n", t.name,
-               1e3 * t.total_s / hits, t.total_s / tallies.back().total_s, 100 * t.step_s / t.total_s,
-               100 * (1 - t.step_s / t.total_s), static_cast<double>(t.steps + t.rejected) / hits,
-               t.over_1deg, t.excess_max_deg, 1e3 * t.separation_max_m, t.energy_gain_max_j, t.settled);
-    if (t.failed > 0) fmt::print("{:<16}{} of {} hits failed\n", "", t.failed, hits);
+    if (t.hits == 0) continue;
+    const double steps = static_cast<double>(t.steps + t.rejected);
+    fmt::print(
+        "{:<16}{:>6}{:>9.2f}{:>8.3f}{:>6.1f}%{:>9.1f}{:>8.0f}{:>10.0f}{:>9}{:>9.3f}{:>8.2f}{:>8.2f}{:>8}\n",
+        t.name, t.hits, 1e3 * t.total_s / t.hits, t.total_s / t.reference_s, 100 * t.step_s / t.total_s,
+        1e6 * t.total_s / steps, steps / t.hits, static_cast<double>(t.rejected) / t.hits, t.over_1deg,
+        t.excess_max_deg, 1e3 * t.separation_max_m, t.energy_gain_max_j, t.settled);
+    if (t.failed > 0) fmt::print("{:<16}{} of {} hits failed\n", "", t.failed, t.hits);
   }
 }
 
@@ -99,12 +123,33 @@ SimulationSettings fixed() {
   return settings;
 }
 
+/// A blow of the same kind, weaker or stronger.
+Scene scaled(Scene scene, double times) {
+  scene.ball_speed_m_s *= times;
+  return scene;
+}
+
+/// Limp bodies, and living ones by what became of them: weak blows for who stands, strong ones for who falls.
 void measure_simulation(const Prepared& prepared, int hits) {
-  std::vector<Tally> tallies = {{"default", {}}, {"without tone", limp()}, {"fixed:480", fixed()}};
+  enum { kLimp, kNoTone, kStood, kStepped, kFell, kFixed };
+  std::vector<Tally> tallies = {{"limp", {}},         {"limp, no tone", limp()}, {"alive: stands", {}},
+                                {"alive: steps", {}}, {"alive: falls", {}},      {"fixed:480", fixed()}};
   const Quat& pelvis = prepared.start.segments[index(Segment::pelvis)].rotation;
-  for (const RandomHit& hit : random_hits(1, hits))
-    for (Tally& tally : tallies) add_hit(tally, prepared, scene_of(hit, pelvis));
-  print_tallies(tallies, hits);
+  for (const RandomHit& hit : random_hits(1, hits)) {
+    const Scene scene = scene_of(hit, pelvis);
+    const Run reference = timed(prepared, scene, tallies[kFixed].settings, Behaviour::limp);
+    add_run(tallies[kFixed], reference, reference.total_s);
+    for (const int row : {kLimp, kNoTone})
+      add_run(tallies[row], timed(prepared, scene, tallies[row].settings, Behaviour::limp),
+              reference.total_s);
+    for (const double times : {0.2, 0.6, 1.5}) {
+      const Run run = timed(prepared, scaled(scene, times), {}, Behaviour::alert);
+      const bool fell = run.result && run.result->behaviour.fall_begins_s;
+      const bool stepped = run.result && !run.result->behaviour.steps.empty();
+      add_run(tallies[fell ? kFell : stepped ? kStepped : kStood], run, reference.total_s);
+    }
+  }
+  print_tallies(tallies);
 }
 
 /// A whole bake as a batch does it: the character is loaded, nothing is drawn.
@@ -162,7 +207,8 @@ Status run(const std::string& name, int hits) {
   if (!path) return path.error();
   const auto character = load_character(*path, LoadOptions{}, diagnostics);
   if (!character) return character.error();
-  const auto prepared = prepare_bake(*character, BakeSettings{}, diagnostics);
+  const BakeSettings settings;
+  const auto prepared = prepare_bake(*character, settings, diagnostics);
   if (!prepared) return prepared.error();
   measure_simulation(*prepared, hits);
   if (const Status status = measure_bakes(*character, hits); !status) return status.error();
