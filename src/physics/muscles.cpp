@@ -13,6 +13,8 @@ constexpr double kToneDamping_s = 0.12;  // damping over stiffness
 constexpr double kRise_s =
     0.2;  // from nothing to full strength (75 to 85 % of the peak after 200 ms in people)
 constexpr double kStretching_rad_s = 0.05;  // speed against the torque from which a muscle is stretched
+constexpr double kWellWithin = 0.9;         // share of a bound up to which it is left out
+constexpr int kWarySteps = 6;              // after an expectation that was wrong
 constexpr double kLeastDamping = 1e-3;      // N m s: a row needs some
 
 /// Rotation that takes the goal to the present rotation, world, rad.
@@ -111,22 +113,33 @@ void Muscle::prepare(double h, const std::vector<JointGoal>& goals) {
   add_torque(model_, joint_, axes * middle);
   for (int i = 0; i < 3; ++i) {
     const Vec3 axis = axes.col(i);
-    const MotorRow row{axis, (sum.wanted[i] - middle[i]) / sum.damping, 1.0 / sum.damping,
-                       0.5 * (sum.most[i] - sum.least[i])};
+    const double half = 0.5 * (sum.most[i] - sum.least[i]);
+    MotorRow row{axis, (sum.wanted[i] - middle[i]) / sum.damping, 1.0 / sum.damping, half};
+    const double expected = (row.target - omega.dot(axis)) / row.cfm;
+    if (!careful_ && std::abs(expected) < kWellWithin * half) row.most_n_m = unbounded();
     set_row(motor_, static_cast<std::size_t>(i), row);
-    rows_.push_back({row, middle[i], omega.dot(axis)});
+    rows_.push_back({row, middle[i], half, omega.dot(axis)});
   }
 }
 
-void Muscle::read() {
+bool Muscle::read() {
   torque_ = Vec3::Zero();
-  if (rows_.empty()) return;
+  if (rows_.empty()) return true;
+  bool held = true;
   const Vec3 omega = relative_omega(model_, joint_);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const MotorRow& row = rows_[i].motor;
     const double asked = (row.target - omega.dot(row.axis)) / row.cfm;
+    held = held && (row.most_n_m < unbounded() || std::abs(asked) <= rows_[i].most_n_m);
     torque_[static_cast<int>(i)] = rows_[i].centre + std::clamp(asked, -row.most_n_m, row.most_n_m);
   }
+  if (!held) careful_ = missed_ = true;
+  return held;
+}
+
+void Muscle::accept() {
+  given_ = torque_;
+  wary_steps_ = missed_ ? kWarySteps : std::max(0, wary_steps_ - 1);
 }
 
 double Muscle::work(double h) const {

@@ -40,13 +40,18 @@ class Muscle {
  public:
   Muscle(OdeWorld& world, const Model& model, const ModelJoint& joint, const JointStrength& strength);
 
+  /// A new step, which may be tried several times. `careful`: every row has its bounds in all of them.
+  void begin_step(bool careful) { careful_ = careful || wary_steps_ > 0, missed_ = false; }
+  /// Rows that are expected to stay well within their bounds have none, which costs the engine far less and
+  /// gives the same torque. Where the expectation was wrong, read() says so, and the next try is careful, as
+  /// are some steps to come.
   void prepare(double h, const std::vector<JointGoal>& goals);
   /// What was given in the step that has just been taken, N m, parent axes of its beginning.
   const Vec3& torque() const { return torque_; }
-  /// Reads the torques of the step that has just been taken; after each try.
-  void read();
+  /// Reads the torques of the try that has just been made. False: it must be made again.
+  bool read();
   /// The step counts: its torques are what the next ones grow from.
-  void accept() { given_ = torque_; }
+  void accept();
   double work(double h) const;
   /// Largest share of the strength that `torque()` uses.
   double share() const;
@@ -67,11 +72,14 @@ class Muscle {
   dJointID motor_;
   struct Row {
     MotorRow motor;
-    double centre = 0.0;  // torque that is added outright; the motor gives the rest
-    double speed = 0.0;   // before the step, rad/s
+    double centre = 0.0;    // torque that is added outright; the motor gives the rest
+    double most_n_m = 0.0;  // of the motor, whether the engine is told or not
+    double speed = 0.0;     // before the step, rad/s
   };
   std::vector<Row> rows_;
   Vec3 torque_ = Vec3::Zero();
+  bool careful_ = false, missed_ = false;  // in this step
+  int wary_steps_ = 0;                     // left to be careful in
   std::optional<Vec3>
       given_;  // in the last step that counts; nothing before the first, which may ask for anything
 };

@@ -98,6 +98,7 @@ void Physics::step(double time_s, double h, const Goals& goals, const Contacts& 
   firm_soles_ = goals.firm_soles;
   help_n_ = goals.help_n;
   all_rows_.assign(model_.joints().size(), false);
+  for (Muscle& muscle : muscles_) muscle.begin_step(!settings_.adaptive);
   for (int attempt = 0; attempt < kTries; ++attempt) {
     add_forces(time_s, h, goals);
     collision_.touch(contacts,
@@ -111,10 +112,10 @@ void Physics::step(double time_s, double h, const Goals& goals, const Contacts& 
       all_rows_[j] = true;
       again = true;
     }
+    for (Muscle& muscle : muscles_) again = !muscle.read() || again;
     if (!again || attempt + 1 == kTries || !settings_.adaptive) break;
     restore();
   }
-  for (Muscle& muscle : muscles_) muscle.read();
 }
 
 void Physics::save() {
