@@ -14,7 +14,7 @@ constexpr double kRise_s =
     0.2;  // from nothing to full strength (75 to 85 % of the peak after 200 ms in people)
 constexpr double kStretching_rad_s = 0.05;  // speed against the torque from which a muscle is stretched
 constexpr double kWellWithin = 0.9;         // share of a bound up to which it is left out
-constexpr int kWarySteps = 6;              // after an expectation that was wrong
+constexpr int kWarySteps = 6;               // after an expectation that was wrong
 constexpr double kLeastDamping = 1e-3;      // N m s: a row needs some
 
 /// Rotation that takes the goal to the present rotation, world, rad.

@@ -40,8 +40,10 @@ class Muscle {
  public:
   Muscle(OdeWorld& world, const Model& model, const ModelJoint& joint, const JointStrength& strength);
 
-  /// A new step, which may be tried several times. `careful`: every row has its bounds in all of them.
-  void begin_step(bool careful) { careful_ = careful || wary_steps_ > 0, missed_ = false; }
+  /// A new step, which may be tried several times.
+  void begin_step() { careful_ = wary_steps_ > 0, missed_ = false; }
+  /// Every row has its bounds in the tries of this step that follow.
+  void take_care() { careful_ = true; }
   /// Rows that are expected to stay well within their bounds have none, which costs the engine far less and
   /// gives the same torque. Where the expectation was wrong, read() says so, and the next try is careful, as
   /// are some steps to come.

@@ -78,7 +78,6 @@ void Physics::make_motors(const Goals& goals) {
 
 void Physics::add_forces(double time_s, double h, const Goals& goals) {
   const double damping = std::min(settings_.damping, kMaxExplicitGain / h);
-  make_motors(goals);
   for (std::size_t j = 0; j < model_.joints().size(); ++j) {
     const ModelJoint& joint = model_.joints()[j];
     passive_[j].prepare(h, settings_.reach, all_rows_[j]);
@@ -98,8 +97,12 @@ void Physics::step(double time_s, double h, const Goals& goals, const Contacts& 
   firm_soles_ = goals.firm_soles;
   help_n_ = goals.help_n;
   all_rows_.assign(model_.joints().size(), false);
-  for (Muscle& muscle : muscles_) muscle.begin_step(!settings_.adaptive);
+  make_motors(goals);
+  for (Muscle& muscle : muscles_) muscle.begin_step();
   for (int attempt = 0; attempt < kTries; ++attempt) {
+    const bool last = attempt + 1 == kTries || !settings_.adaptive;
+    if (last)
+      for (Muscle& muscle : muscles_) muscle.take_care();
     add_forces(time_s, h, goals);
     collision_.touch(contacts,
                      {settings_.sparse_friction, 0.8, goals.firm_soles, scene_.sole_friction(time_s)});
@@ -113,7 +116,7 @@ void Physics::step(double time_s, double h, const Goals& goals, const Contacts& 
       again = true;
     }
     for (Muscle& muscle : muscles_) again = !muscle.read() || again;
-    if (!again || attempt + 1 == kTries || !settings_.adaptive) break;
+    if (!again || last) break;
     restore();
   }
 }

@@ -110,5 +110,30 @@ TEST(Physics, GoesBackToASavedStateWithoutATrace) {
   EXPECT_TRUE(moved);
 }
 
+/// A brake at the hip while the pelvis is thrown forward: turning of the thigh against it after one step,
+/// rad/s.
+double turning_of_a_braked_hip(double brake_n_m_s) {
+  const test::StandingMan man;
+  Physics physics = physics_of(man, strength_of(man.body, Sex::male, 0.05));
+  Goals asked;
+  JointGoal brake = pull(0.0);
+  brake.damping_n_m_s_rad = brake_n_m_s;
+  asked.joints[index(Joint::hip_r)] = {brake};
+  asked.help_n = Vec3(40000.0, 0.0, 0.0);
+  physics.save();
+  physics.step(0.0, kStep_s, asked, {});
+  physics.accept(0.0, kStep_s);
+  EXPECT_GE(physics.muscle_share(), brake_n_m_s > 100.0 ? 0.99 : 0.0);
+  const Senses senses = physics.senses(kStep_s, {});
+  return (senses.angular_velocity[index(Segment::thigh_r)] - senses.angular_velocity[0]).norm();
+}
+
+// Before the step nothing turns, so that the brake is expected to ask for nothing and its row has no bounds.
+TEST(Muscles, ThatAreAskedForMoreThanWasExpectedAreStillCapped) {
+  const double loose = turning_of_a_braked_hip(0.1);
+  EXPECT_GT(loose, 2.0);
+  EXPECT_GT(turning_of_a_braked_hip(1e5), 0.3 * loose);
+}
+
 }  // namespace
 }  // namespace ukemi
