@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
+#include "bake/events.h"
 #include "bake/outputs.h"
 #include "bake/report.h"
 #include "bake/search.h"
@@ -18,6 +20,7 @@
 #include "clip/root_motion.h"
 #include "export/additive.h"
 #include "export/append.h"
+#include "export/vrma.h"
 #include "fbx/fbx.h"
 #include "load/load.h"
 #include "prepare/setting_table.h"
@@ -59,7 +62,8 @@ Result<std::string> extras_of(const Character& character, const BakeSettings& se
   auto ranges = ranges_to_tell(outcome.prepared.range);
   if (!ranges) return ranges.error();
   ClipFacts facts{std::string(name(settings.ground.root_motion)), std::nullopt, std::move(*ranges)};
-  if (settings.additive) facts.additive_from = exported.clip.frames.front();
+  if (settings.additive != Additive::off) facts.additive_from = exported.clip.frames.front();
+  facts.on_rest = settings.additive == Additive::rest;
   const Skeleton& skeleton = exported.with_root ? exported.with_root->skeleton : character.skeleton;
   return animation_extras(skeleton, frames_of(outcome.prepared.actor(character)), outcome.timeline.clip.marks,
                           facts);
@@ -68,7 +72,8 @@ Result<std::string> extras_of(const Character& character, const BakeSettings& se
 Result<std::vector<std::uint8_t>> gltf_bytes(const fs::path& path, const Character& character,
                                              const BakedFile& baked, const Humanoid& humanoid,
                                              const GltfOptions& options) {
-  if (output_format(path) == OutputFormat::glb) return write_glb(character, humanoid, baked.reduced, options);
+  if (output_format(path) != OutputFormat::gltf)
+    return write_glb(character, humanoid, baked.reduced, options);
   const auto text = write_gltf(character, humanoid, baked.reduced, options);
   if (!text) return text.error();
   return bytes_of(*text);
@@ -93,6 +98,14 @@ Result<std::vector<std::uint8_t>> fbx_bytes(const fs::path& path, const Characte
   return write_fbx(shown, exported.humanoid, exported.clip, options, diagnostics);
 }
 
+/// The humanoid's own bones, for avatars of any proportions.
+Result<std::vector<std::uint8_t>> vrma_bytes(const Character& shown, const ExportedClip& exported) {
+  std::vector<BodyPose> frames;
+  for (const Pose& pose : exported.clip.frames)
+    frames.push_back(segments_of(shown.skeleton, exported.humanoid, pose));
+  return write_vrma(exported.clip.name, frames, exported.clip.fps);
+}
+
 Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Character& character,
                                                const BakeSettings& settings, const BakedFile& baked,
                                                const ExportedClip& exported, Diagnostics& diagnostics) {
@@ -102,6 +115,10 @@ Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Chara
   if (output_format(path) == OutputFormat::fbx)
     return fbx_bytes(path, character, settings, exported, diagnostics);
   const Character& shown = exported.with_root ? *exported.with_root : character;
+  if (output_format(path) == OutputFormat::vrma) return vrma_bytes(shown, exported);
+  if (output_format(path) == OutputFormat::vrm && character.vrm_bones.empty())
+    return usage_error(path, "the character is no VRM",
+                       "let the name end in .glb, or in .vrma for any VRM avatar");
   auto extras = extras_of(character, settings, baked.outcome, exported);
   if (!extras) return extras.error();
   GltfOptions options{settings.clip_only, std::move(*extras),
@@ -114,13 +131,22 @@ Result<std::vector<std::uint8_t>> output_bytes(const fs::path& path, const Chara
   return gltf_bytes(path, *earlier, baked, exported.humanoid, options);
 }
 
+std::vector<int> joints_of_skins(const Character& character) {
+  std::set<int> joints;
+  for (const Skin& skin : character.skins) joints.insert(skin.joints.begin(), skin.joints.end());
+  return {joints.begin(), joints.end()};
+}
+
 /// The clip's keys, which keep its joints inside their ranges, and how far they do.
-void make_keys(const Skeleton& skeleton, const SegmentFrames& frames, const ExportedClip& exported,
+void make_keys(const Character& character, const SegmentFrames& frames, const ExportedClip& exported,
                const BakeSettings& settings, BakedFile& baked) {
+  const Skeleton& skeleton = character.skeleton;
   const RangeOfMotion& range = baked.outcome.prepared.range;
   const RangeKeeper keeper(skeleton, frames, range, exported.clip.frames);
+  KeyReduction reduction = settings.keys;
+  if (settings.all_joints) reduction.joints = joints_of_skins(character);
   baked.reduced =
-      reduce_keys(skeleton, exported.clip, exported.humanoid.world_from_file, settings.keys,
+      reduce_keys(skeleton, exported.clip, exported.humanoid.world_from_file, reduction,
                   [&](std::size_t frame, const Pose& reduced) { return keeper.too_far(frame, reduced); });
   const Animation animation{baked.reduced.name, 0.0, exported.clip.duration_s(), exported.clip.fps,
                             baked.reduced.tracks};
@@ -139,13 +165,18 @@ Status prepare_files(const Character& character, const BakeSettings& settings, B
                                 baked.outcome.timeline.clip, settings.ground);
   if (!exported) return exported.error();
   const Skeleton& skeleton = exported->with_root ? exported->with_root->skeleton : character.skeleton;
-  make_keys(skeleton, frames_of(baked.outcome.prepared.actor(character)), *exported, settings, baked);
-  if (settings.additive) baked.reduced = additive(baked.reduced, exported->clip.frames.front());
+  make_keys(exported->with_root ? *exported->with_root : character,
+            frames_of(baked.outcome.prepared.actor(character)), *exported, settings, baked);
+  if (settings.additive != Additive::off)
+    baked.reduced = additive(baked.reduced, exported->clip.frames.front());
+  if (settings.additive == Additive::rest) baked.reduced = on_rest(baked.reduced, skeleton);
   for (const fs::path& path : settings.outputs) {
     auto bytes = output_bytes(path, character, settings, baked, *exported, diagnostics);
     if (!bytes) return bytes.error();
     baked.files.push_back({path, std::move(*bytes)});
   }
+  if (!settings.events.empty())
+    baked.files.push_back({settings.events, bytes_of(events_json(baked.outcome.timeline.clip))});
   baked.root_curve = std::move(exported->root_curve);
   baked.outcome.timings_s.export_ = watch.lap();
   if (!settings.sheet.empty()) {
@@ -173,10 +204,10 @@ Status check_combinations(const BakeSettings& settings) {
     return usage_error(fmt::format("--smooth {} is not below half of the {} frames per second",
                                    *settings.smooth_hz, settings.simulation.fps),
                        "give a lower cut-off, or more --fps");
-  if (settings.additive && to_bvh)
+  if (settings.additive != Additive::off && to_bvh)
     return usage_error("--additive is for glTF: a BVH cannot say what its motion is added to",
                        "leave the .bvh away, or write it by a bake of its own");
-  if (settings.additive && writes(OutputFormat::fbx))
+  if (settings.additive != Additive::off && (writes(OutputFormat::fbx) || writes(OutputFormat::vrma)))
     return usage_error("--additive is for glTF: engines that read FBX make a clip additive on import",
                        "leave --additive away, and give the engine frame 0 as base pose");
   if (settings.knockout && behaviour_settings(settings).kind == Behaviour::limp)

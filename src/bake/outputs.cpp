@@ -37,6 +37,8 @@ std::optional<OutputFormat> output_format(const fs::path& path) {
   if (extension == ".gltf") return OutputFormat::gltf;
   if (extension == ".bvh") return OutputFormat::bvh;
   if (extension == ".fbx") return OutputFormat::fbx;
+  if (extension == ".vrm") return OutputFormat::vrm;
+  if (extension == ".vrma") return OutputFormat::vrma;
   return std::nullopt;
 }
 
@@ -67,7 +69,8 @@ Status check_outputs(const std::string& character, const BakeSettings& settings)
   std::vector<fs::path> paths = settings.outputs;
   for (const fs::path& path : settings.outputs)
     if (!output_format(path))
-      return usage_error(path, "unknown output format", "let the name end in .glb, .gltf, .fbx or .bvh");
+      return usage_error(path, "unknown output format",
+                         "let the name end in .glb, .gltf, .vrm, .vrma, .fbx or .bvh");
   if (!settings.sheet.empty()) {
     if (const Status status = check_picture_name(settings.sheet); !status) return status.error();
     paths.push_back(settings.sheet);
@@ -77,7 +80,8 @@ Status check_outputs(const std::string& character, const BakeSettings& settings)
       return usage_error(settings.preview, "unknown format of a moving picture", "let the name end in .webp");
     paths.push_back(settings.preview);
   }
-  if (!settings.report.empty()) paths.push_back(settings.report);
+  for (const fs::path& file : {settings.report, settings.events})
+    if (!file.empty()) paths.push_back(file);
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (same_file(paths[i], character))
       return usage_error(paths[i], "would overwrite the character", "choose another name for the output");

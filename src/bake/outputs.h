@@ -11,7 +11,7 @@ namespace ukemi {
 
 struct BakeSettings;
 
-enum class OutputFormat { glb, gltf, bvh, fbx };
+enum class OutputFormat { glb, gltf, vrm, bvh, fbx, vrma };
 
 /// By the extension, case ignored; nothing for any other.
 std::optional<OutputFormat> output_format(const std::filesystem::path& path);

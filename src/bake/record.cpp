@@ -71,6 +71,7 @@ std::string record_line(const ReactionRecord& record) {
   json["name"] = record.name;
   json["digest"] = record.digest;
   json["figures"] = record.figures ? to_json(*record.figures) : Json(nullptr);
+  json["library"] = record.library;
   json["files"] = Json::array();
   for (const WrittenFile& file : record.files)
     json["files"].push_back({{"name", file.name}, {"bytes", file.bytes}, {"sha256", file.sha256}});
@@ -91,6 +92,8 @@ std::optional<ReactionRecord> parse_record(std::string_view line) {
     record.name = json.at("name");
     record.digest = json.at("digest");
     if (!json.at("figures").is_null()) record.figures = figures_from(json.at("figures"));
+    record.library = json.at("library");
+    if (record.figures && !Json::accept(record.library)) return std::nullopt;
     for (const Json& file : json.at("files"))
       record.files.push_back({file.at("name"), file.at("bytes"), file.at("sha256")});
     for (const WrittenFile& file : record.files)

@@ -59,6 +59,7 @@ struct ReactionRecord {
   std::string character, name;             // folder, and name of the files
   std::string digest;                      // of the inputs and the program
   std::optional<ReactionFigures> figures;  // of what was baked; nothing where it failed
+  std::string library;                     // its row, see library.h
   std::vector<WrittenFile> files;
   std::vector<std::string> warnings;
   std::string error, fix;     // why it failed

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bake/library.h"
 #include "bake/response.h"
 #include "base/version.h"
 #include "clip/frames.h"
@@ -278,7 +279,8 @@ Json clip_json(const Skeleton& skeleton, const BakeSettings& settings, const Bak
   json["duration_s"] = outcome.timeline.clip.duration_s();
   json["marks_s"] = marks_json(outcome.timeline.clip);
   json["root_motion"] = name(settings.ground.root_motion);
-  json["additive"] = settings.additive;
+  json["additive"] = settings.additive != Additive::off;
+  json["additive_form"] = settings.additive == Additive::off ? Json(nullptr) : Json(name(settings.additive));
   json["root_curve_m"] = nullptr;
   json["jerk_real_motion_p999_deg_s3"] = kRealJerk_deg_s3;
   json["jerk_max_node"] = jerk.node < 0 ? Json(nullptr) : Json(skeleton.label(jerk.node));
@@ -318,6 +320,8 @@ std::string report_json(const std::string& character, const Character& loaded, c
   json["simulation"] = simulation_json(outcome.figures);
   json["clip"] = clip_json(loaded.skeleton, settings, outcome, baked.reduced);
   if (!root_curve.empty()) json["clip"]["root_curve_m"] = root_curve_json(root_curve);
+  json["library"] =
+      Json::parse(library_row(std::filesystem::path(character).stem().string(), settings, baked));
   json["timings_s"] = timings_json(outcome.timings_s, outcome.timeline.clip.duration_s());
   json["warnings"] = Json::array();
   for (const Warning& warning : diagnostics.warnings())

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "bake/library.h"
 #include "base/digest.h"
 #include "base/errors.h"
 #include "base/files.h"
@@ -121,6 +122,8 @@ Status note_verdicts(const BatchPlan& plan, Journal& journal) {
         !status)
       return status;
   }
+  for (const auto& key : plan.news.accepted)
+    if (const Status status = journal.add_accepted(key.first, key.second); !status) return status;
   return Done{};
 }
 
@@ -173,10 +176,13 @@ class Batch {
     for (std::size_t i = 0; i < plan_.reactions.size(); ++i)
       if (auto entry = entry_of(i)) result_.entries.push_back(std::move(*entry));
     Manifest manifest{&plan_.recipe, plan_.reactions.size() - plan_.count(Plan::elsewhere), result_.entries};
-    const std::string stem = "manifest" + shard_suffix(settings_.shard);
-    for (const auto& [extension, text] :
-         {std::pair(".json", manifest_json(manifest)), std::pair(".csv", manifest_csv(manifest))})
-      if (const Status status = write_file(settings_.folder / (stem + extension), text); !status) {
+    const std::string suffix = shard_suffix(settings_.shard);
+    const std::vector<LibraryEntry> library = library_of(result_.entries);
+    for (const auto& [name, text] : {std::pair("manifest" + suffix + ".json", manifest_json(manifest)),
+                                     std::pair("manifest" + suffix + ".csv", manifest_csv(manifest)),
+                                     std::pair("library" + suffix + ".json", library_json(library)),
+                                     std::pair("library" + suffix + ".csv", library_csv(library))})
+      if (const Status status = write_file(settings_.folder / name, text); !status) {
         if (!result_.cannot_write) result_.cannot_write = status.error();
         break;
       }
@@ -201,6 +207,19 @@ class Batch {
       if (const Status status = journal_.add(record); !status && !result_.cannot_write)
         result_.cannot_write = status.error();
     return records_.insert_or_assign(record.digest, std::move(record)).first->second;
+  }
+
+  /// Rows of what was baked, with the verdicts.
+  std::vector<LibraryEntry> library_of(const std::vector<ManifestEntry>& entries) const {
+    std::vector<LibraryEntry> library;
+    for (const ManifestEntry& entry : entries) {
+      if (!entry.record || !entry.record->done()) continue;
+      const bool accepted =
+          plan_.history.verdicts.accepted.contains({entry.record->character, entry.record->name});
+      const bool rejected = entry.status == ReactionStatus::rejected;
+      library.push_back({entry.record->library, rejected ? "rejected" : accepted ? "accepted" : ""});
+    }
+    return library;
   }
 
   std::string rejection(const ReactionFigures& figures) const {

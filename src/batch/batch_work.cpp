@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/bake.h"
+#include "bake/library.h"
 #include "bake/report.h"
 #include "base/character_path.h"
 #include "base/digest.h"
@@ -40,6 +41,7 @@ class BatchWorker {
     record.digest = digest;
     if (const Status status = bake_into(record, reaction, write); !status) {
       record.figures.reset();
+      record.library.clear();
       record.files.clear();
       record.error = status.error().message();
       record.fix = status.error().fix;
@@ -73,6 +75,7 @@ class BatchWorker {
     for (fs::path& output : settings.outputs) output = folder_ / output;
     if (!settings.sheet.empty()) settings.sheet = folder_ / settings.sheet;
     if (!settings.report.empty()) settings.report = folder_ / settings.report;
+    if (!settings.events.empty()) settings.events = folder_ / settings.events;
     return settings;
   }
 
@@ -100,6 +103,7 @@ class BatchWorker {
       record.warnings.push_back(warning.subject.empty() ? warning.what
                                                         : warning.subject + ": " + warning.what);
     record.figures = figures_of(*baked);
+    record.library = library_row(record.character, reaction.settings, *baked);
     return Done{};
   }
 

@@ -4,13 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "prepare/setting_table.h"
 #include "base/character_path.h"
 #include "base/digest.h"
 #include "base/files.h"
 #include "base/uri.h"
 #include "base/version.h"
 #include "load/load.h"
+#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;
@@ -105,6 +105,7 @@ Result<std::string> InputDigests::of(const Reaction& reaction) {
   for (const fs::path& output : reaction.settings.outputs) digest.add_field(output.extension().string());
   digest.add_field(reaction.settings.sheet.empty() ? "" : "sheet");
   digest.add_field(reaction.settings.report.empty() ? "" : "report");
+  digest.add_field(reaction.settings.events.empty() ? "" : "events");
   return digest.hex();
 }
 

@@ -44,6 +44,11 @@ void take_verdict(std::string_view line, Verdicts& verdicts) {
   try {
     const Json json = Json::parse(line);
     const std::pair key(json.at("character").get<std::string>(), json.at("name").get<std::string>());
+    if (json.value("accepted", false)) {
+      verdicts.accepted.insert(key);
+      return;
+    }
+    verdicts.accepted.erase(key);
     const int take = json.at("take");
     const bool left_out = json.at("left_out");
     const std::string comment = json.at("comment");
@@ -124,6 +129,11 @@ Status Journal::add_verdict(const std::string& character, const std::string& nam
                             const std::string& comment) {
   const Json json = {
       {"character", character}, {"name", name}, {"take", take}, {"left_out", left_out}, {"comment", comment}};
+  return add_line(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Status Journal::add_accepted(const std::string& character, const std::string& name) {
+  const Json json = {{"character", character}, {"name", name}, {"accepted", true}};
   return add_line(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

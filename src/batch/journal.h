@@ -16,13 +16,15 @@ namespace ukemi {
 struct Verdicts {
   std::map<std::pair<std::string, std::string>, int> takes;             // rejected ones
   std::map<std::pair<std::string, std::string>, std::string> left_out;  // and the comment
+  std::set<std::pair<std::string, std::string>> accepted;
+  bool empty() const { return takes.empty() && left_out.empty() && accepted.empty(); }
 };
 
 /// What the journals of a folder say.
 struct History {
   std::map<std::string, ReactionRecord> by_digest;  // the last of each
   Verdicts verdicts;
-  bool empty() const { return by_digest.empty() && verdicts.takes.empty() && verdicts.left_out.empty(); }
+  bool empty() const { return by_digest.empty() && verdicts.empty(); }
 };
 
 /// Reads FOLDER/.ukemi/*.jsonl; lines that were cut off are passed over. A folder without them has no
@@ -46,6 +48,7 @@ class Journal {
   /// How often the reaction was rejected, and whether it is left out for good.
   Status add_verdict(const std::string& character, const std::string& name, int take, bool left_out,
                      const std::string& comment);
+  Status add_accepted(const std::string& character, const std::string& name);
 
  private:
   Journal(std::filesystem::path path, int fd) : path_(std::move(path)), fd_(fd) {}

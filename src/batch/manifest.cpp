@@ -1,6 +1,7 @@
 #include "batch/manifest.h"
-#include "prepare/impact.h"
+#include "base/csv.h"
 #include "base/version.h"
+#include "prepare/impact.h"
 
 #include <fmt/format.h>
 
@@ -75,6 +76,7 @@ Json entry_json(const Recipe& recipe, const ManifestEntry& entry) {
     if (made) json["outputs"].push_back(output.generic_string());
   json["report"] = path_or_null(reaction.settings.report, made);
   json["sheet"] = path_or_null(reaction.settings.sheet, made);
+  json["events"] = path_or_null(reaction.settings.events, made);
   json["settings"] = settings_json(reaction);
   json["figures"] = made ? figures_json(*entry.record->figures) : Json(nullptr);
   json["warnings"] = made ? Json(entry.record->warnings) : Json(Json::array());
@@ -83,31 +85,13 @@ Json entry_json(const Recipe& recipe, const ManifestEntry& entry) {
   return json;
 }
 
-/// Quoted where RFC 4180 asks for it.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == text.npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + "\"";
-}
-
-/// Spreadsheets run what begins so.
-std::string harmless(const std::string& text) {
-  return !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos
-             ? "'" + text
-             : text;
-}
-
 std::string csv_field(const Json& value) {
   if (value.is_null()) return "";
-  if (value.is_string()) return quoted(harmless(value.get<std::string>()));
+  if (value.is_string()) return csv_text(value.get<std::string>());
   if (value.is_array()) {
     std::vector<std::string> parts;
     for (const Json& part : value) parts.push_back(part.get<std::string>());
-    return quoted(harmless(fmt::format("{}", fmt::join(parts, ";"))));
+    return csv_text(fmt::format("{}", fmt::join(parts, ";")));
   }
   return value.dump();
 }
@@ -116,7 +100,8 @@ const std::vector<std::string> kOwn = {"character", "name", "status"};
 const std::vector<std::string> kSettings = {"hit",  "from", "preset",    "scene", "pose",
                                             "clip", "at_s", "variation", "seed"};
 const std::vector<std::string> kVaried = {"from", "strength", "aim_up_m", "aim_left_m"};
-const std::vector<std::string> kRest = {"error", "warnings", "outputs", "report", "sheet", "digest"};
+const std::vector<std::string> kRest = {"error", "warnings", "outputs", "report",
+                                        "sheet", "events",   "digest"};
 
 std::vector<std::string> figure_keys() {
   const Json figures = figures_json({});

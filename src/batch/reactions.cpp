@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prepare/direction.h"
-#include "prepare/setting_table.h"
 #include "base/digest.h"
 #include "base/errors.h"
 #include "base/file_names.h"
 #include "base/random.h"
 #include "batch/recipe.h"
+#include "prepare/direction.h"
+#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;
@@ -193,6 +193,8 @@ class Expansion {
         reaction.settings.sheet = file;
       else if (kind == OutputKind::report)
         reaction.settings.report = file;
+      else if (kind == OutputKind::events)
+        reaction.settings.events = file;
       else
         reaction.settings.outputs.push_back(file);
     }

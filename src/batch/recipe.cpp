@@ -10,11 +10,11 @@
 #include <optional>
 #include <set>
 
-#include "prepare/setting_table.h"
 #include "base/errors.h"
 #include "base/file_names.h"
 #include "base/files.h"
 #include "base/nearest.h"
+#include "prepare/setting_table.h"
 #include "restrict/region_tables.h"
 
 namespace ukemi {
@@ -29,12 +29,10 @@ const std::vector<std::string> kTopKeys = {"format",   "characters", "outputs", 
                                            "settings", "character",  "joint",   "matrix", "reaction"};
 const std::vector<std::string> kMatrixKeys = {"name", "characters", "outputs", "variations", "jitter"};
 const std::vector<std::string> kJitterKeys = {"direction-deg", "point-m", "strength-percent"};
-const std::vector<std::pair<std::string, OutputKind>> kOutputWords = {{"glb", OutputKind::glb},
-                                                                      {"gltf", OutputKind::gltf},
-                                                                      {"fbx", OutputKind::fbx},
-                                                                      {"bvh", OutputKind::bvh},
-                                                                      {"sheet", OutputKind::sheet},
-                                                                      {"report", OutputKind::report}};
+const std::vector<std::pair<std::string, OutputKind>> kOutputWords = {
+    {"glb", OutputKind::glb},       {"gltf", OutputKind::gltf},    {"fbx", OutputKind::fbx},
+    {"vrma", OutputKind::vrma},     {"bvh", OutputKind::bvh},      {"sheet", OutputKind::sheet},
+    {"report", OutputKind::report}, {"events", OutputKind::events}};
 
 /// Faults inside the reader, turned into results at its edge.
 struct Fault {
@@ -521,10 +519,14 @@ std::string_view extension(OutputKind kind) {
       return ".gltf";
     case OutputKind::fbx:
       return ".fbx";
+    case OutputKind::vrma:
+      return ".vrma";
     case OutputKind::bvh:
       return ".bvh";
     case OutputKind::sheet:
       return ".png";
+    case OutputKind::events:
+      return ".events.json";
     case OutputKind::report:
       break;
   }

@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "prepare/settings.h"
 #include "base/result.h"
+#include "prepare/settings.h"
 #include "restrict/range_of_motion.h"
 
 namespace ukemi {
 
 /// Files that a reaction may have.
-enum class OutputKind { glb, gltf, fbx, bvh, sheet, report };
+enum class OutputKind { glb, gltf, fbx, vrma, bvh, sheet, report, events };
 std::string_view extension(OutputKind kind);  // ".glb", ".png" of the sheet, ".json" of the report
 
 /// What a recipe says of one setting: texts as Setting::set takes them, and where it says so.

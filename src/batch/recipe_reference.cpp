@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "prepare/setting_table.h"
 #include "batch/recipe.h"
+#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
@@ -23,7 +23,8 @@ format = 1
 ## Files beside this one; * and ? stand for parts of a name. "mannequin" is the program's own character.
 characters = ["mannequin"]
 
-## What each reaction gets: glb gltf fbx bvh, a sheet (contact sheet, .png), a report (.json).
+## What each reaction gets: glb gltf fbx vrma bvh, a sheet (contact sheet, .png), a report (.json),
+## events (when what happens, .events.json).
 outputs = ["glb", "sheet", "report"]
 
 ## Name of the files and clips of matrices: any setting in braces, {variation}, {character}. The default has

@@ -48,6 +48,7 @@ Status reject(const fs::path& file, const Json& entry, const Indices& indices, B
   const bool varies = plan.reactions[i].varies;
   const int take = known.takes[key] + (varies ? 1 : 0);
   known.takes[key] = plan.news.takes[key] = take;
+  known.accepted.erase(key);
   if (varies) return Done{};
   known.left_out[key] = plan.news.left_out[key] = entry.value("comment", "");
   return Done{};
@@ -57,6 +58,8 @@ Status accept(const fs::path& file, const Json& entry, const Indices& indices, B
   const auto named = reaction_named(file, entry, indices);
   if (!named) return named.error();
   const Key& key = (*named)->first;
+  plan.history.verdicts.accepted.insert(key);
+  plan.news.accepted.insert(key);
   if (plan.history.verdicts.left_out.erase(key) == 0) return Done{};
   plan.news.takes[key] = plan.history.verdicts.takes[key];
   return Done{};

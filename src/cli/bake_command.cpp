@@ -28,7 +28,7 @@ struct BakeRequest {
 void declare_out(Options& options, BakeRequest& request) {
   BakeSettings& settings = request.settings;
   options.group("out");
-  options.paths("-o,--output", settings.outputs, "the clip, as .glb, .gltf, .fbx or .bvh");
+  options.paths("-o,--output", settings.outputs, "the clip, as .glb, .gltf, .fbx, .bvh, .vrm (of a VRM) or .vrma (for any VRM)");
   options.flag("--append", settings.append, "add the clip to those of a glTF or FBX output that exists");
   options.path("--sheet", settings.sheet, "contact sheet, as .png");
   options.path("--preview", settings.preview, "moving picture, as .webp (640x360, 30 a second)");
@@ -36,6 +36,7 @@ void declare_out(Options& options, BakeRequest& request) {
       "--theme", "light|dark", [&](const std::string& text) { return take_theme(text, settings.theme); },
       "colours of the pictures [default light]");
   options.path("--report", settings.report, "what the bake did, as JSON");
+  options.path("--events", settings.events, "when what happens in the clip, as JSON: hit.events.json");
   options.flag("--json", request.json, "the same JSON to stdout");
   options.flag("--quiet", request.quiet, "nothing to stdout, no warnings");
 }
@@ -45,9 +46,10 @@ Status check(const BakeRequest& request) {
   if (request.json && request.quiet)
     return usage_error("--json and --quiet exclude each other", "give one of them");
   if (settings.outputs.empty() && settings.sheet.empty() && settings.preview.empty() &&
-      settings.report.empty() && !request.json)
-    return usage_error("nothing to write",
-                       "add -o hit.glb (or .gltf, .fbx, .bvh), --sheet, --preview, --report or --json");
+      settings.report.empty() && settings.events.empty() && !request.json)
+    return usage_error(
+        "nothing to write",
+        "add -o hit.glb (or .gltf, .fbx, .bvh), --sheet, --preview, --report, --events or --json");
   return Done{};
 }
 
@@ -91,7 +93,8 @@ std::string summary(const BakeRequest& request, const BakedFile& baked) {
   for (const auto& output : request.settings.outputs) text += "wrote " + output.string() + "\n";
   if (!request.settings.sheet.empty()) text += "wrote " + request.settings.sheet.string() + "\n";
   if (!request.settings.preview.empty()) text += "wrote " + request.settings.preview.string() + "\n";
-  if (!request.settings.report.empty()) text += "wrote " + request.settings.report.string() + "\n";
+  for (const auto& file : {request.settings.report, request.settings.events})
+    if (!file.empty()) text += "wrote " + file.string() + "\n";
   return text;
 }
 

@@ -128,6 +128,7 @@ std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& fram
   ours["root_motion"] = facts.root_motion;
   ours["additive"] = facts.additive_from.has_value();
   if (facts.additive_from) ours["from"] = pose_json(skeleton, *facts.additive_from);
+  if (facts.on_rest) ours["on_rest"] = true;
   for (const auto& [joint, range] : facts.ranges)
     ours["ranges"][std::string(name(joint))] = range_json(range);
   const Json json = {{"ukemi", std::move(ours)}};

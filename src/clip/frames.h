@@ -35,6 +35,7 @@ struct ClipFacts {
   std::string root_motion = "hips";
   std::optional<Pose> additive_from;                 // an additive clip: the pose it is the difference from
   std::vector<std::pair<Joint, JointRange>> ranges;  // in force, where they are not the human ones
+  bool on_rest = false;                              // an additive clip that stands on the rest pose
 };
 
 /// The extras of a baked animation: {"ukemi": {"format": 1, "generator": ..., "segments": {SEGMENT: {"node",
@@ -43,7 +44,7 @@ struct ClipFacts {
 /// {"translation", "rotation", "scale"}}, "ranges": {JOINT: {"polygon", "twist" (radians),
 /// "parent_from_joint", "reference"}}}}; null for a fused segment. "from", of an additive clip, lists the
 /// nodes that do not rest in the pose it is added to; "ranges" the joints whose range in force is not the
-/// human one.
+/// human one. "on_rest", true: values stand on the rest pose.
 std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames,
                              const std::vector<Mark>& marks = {}, const ClipFacts& facts = {});
 

@@ -1,5 +1,6 @@
 #include "clip/root_motion.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -15,16 +16,33 @@ bool says_root(std::string name) {
   return name.find("root") != std::string::npos;
 }
 
-/// A joint above the hips that is called root; -1 where there is none.
-int root_joint_of(const Skeleton& skeleton, int hips) {
+bool is_skin_joint(const Character& character, int node) {
+  return std::any_of(character.skins.begin(), character.skins.end(), [node](const Skin& skin) {
+    return std::find(skin.joints.begin(), skin.joints.end(), node) != skin.joints.end();
+  });
+}
+
+/// Something that holds meshes beside the bones: the file's scene, or a wrapper of it.
+bool holds_meshes(const Character& character, int node) {
+  return std::any_of(character.parts.begin(), character.parts.end(), [&](const MeshPart& part) {
+    return part.skin >= 0 && character.skeleton.is_ancestor(node, part.node);
+  });
+}
+
+/// The rig's own root bone: the first of the skin's joints in the hierarchy above the hips, or a bone above
+/// them that is called root; -1 where there is none.
+int root_joint_of(const Character& character, int hips) {
+  const Skeleton& skeleton = character.skeleton;
+  int root = -1;
   for (int i = skeleton.nodes[hips].parent; i >= 0; i = skeleton.nodes[i].parent)
-    if (says_root(skeleton.nodes[i].name)) return i;
-  return -1;
+    if (is_skin_joint(character, i) || (says_root(skeleton.nodes[i].name) && !holds_meshes(character, i)))
+      root = i;
+  return root;
 }
 
 Status add_root_joint(const Character& character, ExportedClip& exported) {
   const int hips = exported.humanoid.root;
-  exported.root_joint = root_joint_of(character.skeleton, hips);
+  exported.root_joint = root_joint_of(character, hips);
   if (exported.root_joint >= 0) return Done{};
   auto with_root = with_root_joint(character, hips);
   if (!with_root) return with_root.error();

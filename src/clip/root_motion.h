@@ -12,7 +12,8 @@
 
 namespace ukemi {
 
-/// What takes the motion over the ground: the hips as simulated, a root joint above them, or nothing.
+/// What takes the motion over the ground: the hips as simulated, the root joint above them (the rig's own
+/// where it has one, else one that is added to the skin), or nothing.
 enum class RootMotion { hips, root, in_place };
 std::string_view name(RootMotion motion);  // "hips", "root", "in-place"
 

@@ -23,6 +23,17 @@ void subtract(Track& track, std::size_t key, const LocalTransform& from) {
   }
 }
 
+/// Puts a difference on a transform.
+void put_on(const LocalTransform& base, TrackPath path, double* value) {
+  if (path == TrackPath::rotation) {
+    const Quat sum = base.rotation * Quat(value[3], value[0], value[1], value[2]);
+    std::copy_n(sum.coeffs().data(), 4, value);
+    return;
+  }
+  for (int i = 0; i < 3; ++i)
+    value[i] = path == TrackPath::translation ? base.translation[i] + value[i] : base.scale[i] * value[i];
+}
+
 bool is_nothing(const Track& track) {
   const std::size_t width = track.path == TrackPath::rotation ? 4 : 3;
   for (std::size_t i = 0; i < track.values.size(); ++i) {
@@ -34,6 +45,22 @@ bool is_nothing(const Track& track) {
 }
 
 }  // namespace
+
+std::string_view name(Additive form) {
+  constexpr std::string_view kNames[] = {"off", "identity", "rest"};
+  return kNames[static_cast<int>(form)];
+}
+
+ReducedClip on_rest(const ReducedClip& difference, const Skeleton& skeleton) {
+  ReducedClip result = difference;
+  for (Track& track : result.tracks) {
+    const LocalTransform& rest = skeleton.nodes[track.node].rest;
+    const std::size_t width = track.path == TrackPath::rotation ? 4 : 3;
+    for (std::size_t at = 0; at + width <= track.values.size(); at += width)
+      put_on(rest, track.path, track.values.data() + at);
+  }
+  return result;
+}
 
 ReducedClip additive(const ReducedClip& clip, const Pose& pose) {
   ReducedClip result = clip;

@@ -21,6 +21,7 @@ struct KeyReduction {
   /// Rotations rounded to what normalised 16-bit integers hold; keys are kept until the whole error is within
   /// the tolerance, or all are.
   bool short_rotations = false;
+  std::vector<int> joints{};  // have keys at both ends where they rest
 };
 
 /// The clip as tracks: only quantities that move, linear interpolation, the shorter arc between rotations;
@@ -55,8 +56,9 @@ struct GltfOptions {
 /// `matrix` gets translation, rotation and scale instead (glTF demands it), and a change of container moves
 /// buffers and images into the binary chunk or out of it. The name of the animation is made unique. In a .glb
 /// the source's binary chunk is a prefix of the new one; a .gltf gets a further buffer. Documents that the
-/// loader wrote (BVH, FBX, DAE) get a root node "ukemi_world" with `world_from_file`, and a simple figure
-/// where they have no mesh. Errors: input (document cannot take an animation, an image is missing), internal.
+/// loader wrote (BVH, FBX, DAE) get a root node of the file's name with `world_from_file`, their
+/// skinned meshes at the scene's root, and a simple figure where they have no mesh. Errors: input (document
+/// cannot take an animation, an image is missing), internal.
 Result<std::vector<std::uint8_t>> write_glb(const Character& character, const Humanoid& humanoid,
                                             const ReducedClip& clip, const GltfOptions& options);
 Result<std::string> write_gltf(const Character& character, const Humanoid& humanoid, const ReducedClip& clip,

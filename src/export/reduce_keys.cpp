@@ -379,6 +379,24 @@ void keep_duration(std::vector<KeyCurve>& curves, const Skeleton& skeleton, cons
   curves.front().values.push_back(curves.front().values.front());
 }
 
+/// Gives translation and rotation of `joints` a key at either end where they have none or a single one: what
+/// plays them need not know the rest pose.
+void key_both_ends(const std::vector<int>& joints, const Clip& clip, std::vector<KeyCurve>& curves) {
+  const int last = static_cast<int>(clip.frames.size()) - 1;
+  for (const int node : joints)
+    for (const TrackPath path : {TrackPath::translation, TrackPath::rotation}) {
+      const auto of_joint = [&](const KeyCurve& curve) { return curve.node == node && curve.path == path; };
+      auto curve = std::find_if(curves.begin(), curves.end(), of_joint);
+      if (curve == curves.end()) {
+        curve = curves.insert(curve, curve_of(clip, node, path));
+        keep_one_key(*curve);
+      }
+      if (!curve->is_single() || last == 0) continue;
+      curve->keys.push_back(last);
+      curve->values.push_back(curve->values.front());
+    }
+}
+
 }  // namespace
 
 ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Similarity& world_from_file,
@@ -398,6 +416,7 @@ ReducedClip reduce_keys(const Skeleton& skeleton, const Clip& clip, const Simila
     if (!settings.enabled || result.error_m <= settings.tolerance_m || bound_m <= 0.0) break;
     bound_m = attempt + 2 < kAttempts ? bound_m - 1.1 * (result.error_m - settings.tolerance_m) : 0.0;
   }
+  key_both_ends(settings.joints, clip, curves);
   keep_duration(curves, skeleton, clip);
   for (const KeyCurve& curve : curves) {
     result.tracks.push_back(track_of(curve, clip.fps));

@@ -243,17 +243,32 @@ Json& default_scene(Json& json, const Skeleton& skeleton) {
 }
 
 /// Puts the file's units and axes right: glTF is metres, y up.
-void add_world_root(Json& json, const Skeleton& skeleton, const Similarity& world_from_file) {
+void add_world_root(Json& json, const Character& character, const Similarity& world_from_file) {
   const Eigen::Vector4d& r = world_from_file.rotation.coeffs();
   const double s = world_from_file.scale;
   if (s == 1.0 && r.head<3>().isZero(1e-12)) return;
-  Json& scene = default_scene(json, skeleton);
+  Json& scene = default_scene(json, character.skeleton);
   Json roots = array_of(scene, "nodes");
-  const std::size_t world = append(json["nodes"], {{"name", "ukemi_world"},
-                                                   {"rotation", {r[0], r[1], r[2], r[3]}},
-                                                   {"scale", {s, s, s}},
-                                                   {"children", std::move(roots)}});
+  const std::size_t world =
+      append(json["nodes"], {{"name", character.name.empty() ? "character" : character.name},
+                             {"rotation", {r[0], r[1], r[2], r[3]}},
+                             {"scale", {s, s, s}},
+                             {"children", std::move(roots)}});
   scene["nodes"] = Json::array({world});
+}
+
+/// A skinned mesh ignores its node: it goes to one of its own at the scene's root.
+void free_skinned_meshes(Json& json, const Skeleton& skeleton) {
+  for (int node = 0; node < skeleton.size(); ++node) {
+    if (!json["nodes"][node].contains("skin") || !json["nodes"][node].contains("mesh")) continue;
+    Json mesh = {{"name", json["nodes"][node].value("name", "") + "_mesh"},
+                 {"mesh", json["nodes"][node]["mesh"]},
+                 {"skin", json["nodes"][node]["skin"]}};
+    json["nodes"][node].erase("mesh");
+    json["nodes"][node].erase("skin");
+    const std::size_t fresh = append(json["nodes"], std::move(mesh));
+    array_of(default_scene(json, skeleton), "nodes").push_back(fresh);
+  }
 }
 
 // ---- the figure of a skeleton without a mesh
@@ -503,7 +518,8 @@ void add_clip(Edit& edit, const Character& character, const Humanoid& humanoid, 
   for (const Track& track : clip.tracks)
     matrix_to_trs(edit.json["nodes"][track.node], character.skeleton.nodes[track.node].rest);
   if (character.format != SourceFormat::gltf) {
-    add_world_root(edit.json, character.skeleton, humanoid.world_from_file);
+    add_world_root(edit.json, character, humanoid.world_from_file);
+    free_skinned_meshes(edit.json, character.skeleton);
     if (!edit.json.contains("meshes") && !options.clip_only) add_figure(edit, character, humanoid);
   }
   add_animation(edit, clip, options.extras_json);

@@ -36,12 +36,28 @@ void add(Track& track, const LocalTransform& base) {
   }
 }
 
-/// What does not differ has no track: it stays as in the pose.
-void restore(const Pose& base, Animation& animation) {
+/// Differences that stand on the rest pose: what to add so that they stand on `pose`.
+Pose beyond_rest(const Skeleton& skeleton, Pose pose) {
+  for (int i = 0; i < skeleton.size(); ++i) {
+    const LocalTransform& rest = skeleton.nodes[i].rest;
+    pose[i].translation -= rest.translation;
+    pose[i].rotation = pose[i].rotation * rest.rotation.conjugate();
+    pose[i].scale = pose[i].scale.cwiseQuotient(rest.scale);
+  }
+  return pose;
+}
+
+std::vector<double> value_of(const LocalTransform& local, TrackPath path) {
+  if (path == TrackPath::rotation) return {local.rotation.coeffs().begin(), local.rotation.coeffs().end()};
+  const Vec3& v = path == TrackPath::translation ? local.translation : local.scale;
+  return {v.begin(), v.end()};
+}
+
+/// What does not differ has no track: it stays as in the pose. `none`: values that are no difference.
+void restore(const Pose& base, const Pose& none, Animation& animation) {
   std::vector<std::array<bool, 3>> has_track(base.size(), std::array<bool, 3>{});
   for (const Track& track : animation.tracks)
     has_track[track.node][static_cast<std::size_t>(track.path)] = true;
-  const std::array<std::vector<double>, 3> none = {{{0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}}};
   for (std::size_t node = 0; node < base.size(); ++node)
     for (std::size_t path = 0; path < 3; ++path)
       if (!has_track[node][path])
@@ -49,7 +65,7 @@ void restore(const Pose& base, Animation& animation) {
                                     static_cast<TrackPath>(path),
                                     Interpolation::linear,
                                     {animation.start_s},
-                                    none[path]});
+                                    value_of(none[node], static_cast<TrackPath>(path))});
   for (Track& track : animation.tracks)
     if (track.interpolation != Interpolation::cubic) add(track, base[track.node]);
 }
@@ -61,7 +77,12 @@ void restore_additive(Character& character) {
       if (animation.extras_json.find("additive") == std::string::npos) continue;
       const JsonDocument json(animation.extras_json);
       const auto ours = json.root().find("ukemi");
-      if (ours && ours->boolean("additive", false)) restore(base_pose(character.skeleton, *ours), animation);
+      if (!ours || !ours->boolean("additive", false)) continue;
+      const Pose from = base_pose(character.skeleton, *ours);
+      if (ours->boolean("on_rest", false))
+        restore(beyond_rest(character.skeleton, from), rest_pose(character.skeleton), animation);
+      else
+        restore(from, Pose(from.size()), animation);
     } catch (const Refusal&) {  // extras that this program did not write
     }
 }

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/child.h"
 #include "base/errors.h"
 #include "load/assimp_scene.h"
-#include "load/child.h"
 #include "load/gltf_reader.h"
 #include "load/load.h"
 #include "load/text.h"
@@ -95,7 +95,7 @@ Result<SceneDocument> import_in_child(std::span<const std::uint8_t> bytes, const
     const Result<SceneDocument> result = import(bytes, path, warnings);
     return packed(result, warnings);
   };
-  const auto answer = load::run_in_child(work, load::ChildLimits{}, path);
+  const auto answer = run_in_child(work, ChildLimits{}, path);
   if (!answer) return answer.error();
   try {
     return unpacked(*answer, path, diagnostics);

@@ -557,16 +557,19 @@ Settings clip_settings() {
       choice<S, RootMotion>(
           "root-motion",
           {{"hips", RootMotion::hips}, {"root", RootMotion::root}, {"in-place", RootMotion::in_place}},
-          "motion over the ground: on the hips, on a root joint above them (of a glTF; added where there is "
-          "none), or left out (the report keeps it)",
+          "motion over the ground: on the hips, on the skin's root joint above them (of a glTF or FBX; added "
+          "where "
+          "there is none), or left out (the report keeps it)",
           [](auto& s) -> auto& { return s.ground.root_motion; }),
       on_off<S>(
           "align", "turn and move the clip so that it starts at the origin, facing +z",
           [](auto& s) -> auto& { return s.ground.align; }),
-      on_off<S>(
-          "additive",
-          "glTF clip as the difference from its first frame: rotation start^-1 * value, translation value - "
-          "start",
+      choice<S, Additive>(
+          "additive", {{"off", Additive::off}, {"identity", Additive::identity}, {"rest", Additive::rest}},
+          "glTF clip as the difference from its first frame: alone (three.js, Babylon.js), or on top of the "
+          "rest "
+          "pose (Godot 4, Flax); Unity and Unreal take the plain clip and make it additive, base pose frame "
+          "0",
           [](auto& s) -> auto& { return s.additive; }),
       choice<S, bool>(
           "extra-bones", {{"hold", false}, {"clip", true}},
@@ -594,8 +597,11 @@ Settings out_settings() {
           "numbers of a glTF clip's rotations; int16 halves them, within the same error",
           [](auto& s) -> auto& { return s.keys.short_rotations; }),
       on_off<S>(
-          "clip-only", "glTF of skeleton and clip, without the mesh",
+          "clip-only", "glTF or FBX of skeleton and clip, without the mesh",
           [](auto& s) -> auto& { return s.clip_only; }),
+      on_off<S>(
+          "all-joints", "keys for every joint of the skin in a glTF, two where it rests (an FBX has them)",
+          [](auto& s) -> auto& { return s.all_joints; }),
       with_unset(
           choice<S, std::optional<double>>(
               "bvh-unit", {{"cm", 0.01}, {"m", 1.0}}, "length unit of a BVH that does not come from a BVH",

@@ -11,7 +11,7 @@
 #include "body/body.h"
 #include "clip/recovery.h"
 #include "clip/root_motion.h"
-#include "export/export.h"
+#include "export/additive.h"
 #include "humanoid/humanoid.h"
 #include "prepare/direction.h"
 #include "render/render.h"
@@ -73,20 +73,22 @@ struct BakeSettings {
   std::optional<double> recover_s;
   RecoverTo recover_to = RecoverTo::rest;
   GroundPlacement ground;
-  bool additive = false;            // difference from the first frame
-  bool extra_bones_play = false;    // bones of no segment play the start clip on
-  std::optional<double> smooth_hz;  // cut-off of a zero-phase filter
+  Additive additive = Additive::off;  // a difference from the first frame
+  bool extra_bones_play = false;      // bones of no segment play the start clip on
+  std::optional<double> smooth_hz;    // cut-off of a zero-phase filter
   KeyReduction keys;
   // out
   bool append = false;   // to the clips that an output holds
   std::string reaction;  // name of the clip; empty: SEGMENT_FROM
   std::vector<std::filesystem::path> outputs;
-  bool clip_only = false;  // glTF without the mesh
+  bool clip_only = false;   // without the mesh
+  bool all_joints = false;  // keys for every joint of the skin
   std::optional<double> bvh_metres_per_unit;
   std::filesystem::path sheet;         // empty: none
   std::filesystem::path preview;       // moving; empty: none
   ThemeKind theme = ThemeKind::light;  // of the pictures
   std::filesystem::path report;        // empty: none
+  std::filesystem::path events;        // times of the clip's marks; empty: none
 };
 
 /// The name a bake's clip gets: that of the settings, else SEGMENT_FROM.

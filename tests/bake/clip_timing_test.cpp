@@ -231,6 +231,10 @@ TEST(RootMotion, OnARootJointLeavesEveryJointInTheWorld) {
   const Skeleton& skeleton = exported->with_root->skeleton;
   ASSERT_EQ(exported->root_joint, mannequin().skeleton.size());
   EXPECT_EQ(skeleton.nodes[exported->humanoid.root].parent, exported->root_joint);
+  const Skin& skin = exported->with_root->skins.at(0);
+  EXPECT_EQ(skin.joints.back(), exported->root_joint) << "a bone among the others";
+  EXPECT_EQ(skin.joints.size(), mannequin().skins.at(0).joints.size() + 1);
+  EXPECT_LT(skin.inverse_bind.back().translation().norm(), 1e-6) << "bound where it rests, at the origin";
   for (std::size_t f = 0; f < exported->clip.frames.size(); f += 10) {
     const auto world = world_transforms(skeleton, exported->clip.frames[f]);
     const auto whole = world_transforms(mannequin().skeleton, plain().timeline.clip.frames[f]);

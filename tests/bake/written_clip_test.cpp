@@ -1,6 +1,8 @@
 // What a bake writes, read back: its poses, and its joints in the range that it carries.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "bake/bake.h"
 #include "judge/rom_figures.h"
 #include "load/load.h"
@@ -58,7 +60,9 @@ TEST(WrittenClip, AnAdditiveOneIsReadAsThePosesThatItMakes) {
     settings.simulation.duration_s = 0.5;
     Diagnostics diagnostics;
     const Written plain = written(character, settings, "plain.glb", diagnostics);
-    settings.additive = true;
+    settings.additive = Additive::rest;
+    EXPECT_LT(largest_distance_m(plain, written(character, settings, "rest.glb", diagnostics)), 1e-4);
+    settings.additive = Additive::identity;
     const Written additive = written(character, settings, "additive.glb", diagnostics);
     EXPECT_LT(largest_distance_m(plain, additive), 1e-4);
     const auto humanoid = map_humanoid(additive.file, {}, diagnostics);
@@ -69,6 +73,24 @@ TEST(WrittenClip, AnAdditiveOneIsReadAsThePosesThatItMakes) {
     EXPECT_EQ(paths.rolls, Rolls::stored);
     EXPECT_LT(rom_figures(paths).excess_max_deg, 1.0);
   }
+}
+
+TEST(WrittenClip, EveryJointOfTheSkinHasKeysAtBothEndsOnRequest) {
+  BakeSettings settings;
+  settings.simulation.duration_s = 0.5;
+  Diagnostics diagnostics;
+  const auto keyed = [&](const Written& w) {
+    std::set<int> nodes;
+    for (const Track& track : w.file.animations.back().tracks)
+      if (track.path == TrackPath::rotation && track.times.size() > 1) nodes.insert(track.node);
+    return nodes;
+  };
+  const Written few = written(mannequin(), settings, "few.glb", diagnostics);
+  settings.all_joints = true;
+  const Written all = written(mannequin(), settings, "all.glb", diagnostics);
+  EXPECT_LT(keyed(few).size(), mannequin().skins.at(0).joints.size());
+  for (const int joint : mannequin().skins.at(0).joints) EXPECT_TRUE(keyed(all).contains(joint)) << joint;
+  EXPECT_LT(largest_distance_m(few, all), 1e-6);
 }
 
 /// Largest excess of the file's last clip, degrees, as `rom --check` has it.

@@ -213,7 +213,7 @@ TEST_F(JudgedFiles, AreRefusedWhereThereIsNothingToJudge) {
   settings.judge.to_s = 0.3;
   EXPECT_NE(refusal(settings).what.find("--to"), std::string::npos);
   BakeSettings additive;
-  additive.additive = true;
+  additive.additive = Additive::identity;
   EXPECT_NE(refusal(clip_of(baked(additive))).what.find("additive"), std::string::npos);
 }
 

@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "program.h"
@@ -317,6 +318,54 @@ TEST_F(Batch, TheTableOpensInASpreadsheet) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), kReactions + 1);
   EXPECT_EQ(csv.rfind("character,name,status,hit,from,", 0), 0u);
   EXPECT_NE(csv.find("\r\nmannequin,head_left_0,done,head,left,medicine-ball,"), std::string::npos) << csv;
+}
+
+TEST_F(Batch, TheLibraryIsATableForEngines) {
+  EXPECT_EQ(batch("out").status, 0);
+  const std::string csv = read("out/library.csv");
+  const nlohmann::json rows = nlohmann::json::parse(read("out/library.json"));
+  ASSERT_EQ(rows.size(), static_cast<std::size_t>(kReactions));
+  EXPECT_EQ(csv.rfind("Name,Character,Reaction,Clip,File,Segment,", 0), 0u)
+      << "an engine takes the first as key";
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), kReactions + 1);
+  EXPECT_EQ(csv.find('"'), csv.npos) << "no cell needs quotes";
+  std::ifstream unreal(fs::path(UKEMI_ASSETS_FOLDER) / "../tools/engines/unreal/UkemiReaction.h");
+  std::string columns = "Name";
+  for (std::string line; std::getline(unreal, line);)
+    if (const auto at = line.find("BlueprintReadOnly) "); at != line.npos) {
+      std::istringstream member(line.substr(at + 19));
+      std::string type, name;
+      member >> type >> name;
+      columns += "," + name.substr(0, name.find(';'));
+    }
+  EXPECT_EQ(csv.substr(0, csv.find("\r\n")), columns) << "the row struct for Unreal";
+  std::set<std::string> names;
+  for (const auto& row : rows) {
+    names.insert(row["Name"]);
+    EXPECT_TRUE(fs::exists(folder / "out" / row["File"].get<std::string>()));
+    for (const auto& [key, value] : row.items()) EXPECT_TRUE(value.is_primitive() && !value.is_null()) << key;
+    EXPECT_NE(csv.find("\r\n" + row["Name"].get<std::string>() + ","), csv.npos);
+  }
+  EXPECT_EQ(names.size(), rows.size()) << "each name once";
+  const auto blow = std::find_if(rows.begin(), rows.end(),
+                                 [](const auto& row) { return row["Name"] == "mannequin_head_left_0"; });
+  ASSERT_NE(blow, rows.end());
+  EXPECT_EQ((*blow)["From"], "left");
+  EXPECT_GT((*blow)["PeakHeadSpeed"].get<double>(), 0.5);
+}
+
+TEST_F(Batch, TheLibrarySaysWhatReviewersSaid) {
+  EXPECT_EQ(batch("out").status, 0);
+  write("verdicts.json",
+        R"({"format": 1, "rejects": [], "accepts": [{"character": "mannequin", "name": "head_left_0"}]})");
+  EXPECT_EQ(batch("out", {"--resume", "--rejects", (folder / "verdicts.json").string()}).status, 0);
+  EXPECT_EQ(batch("out", {"--resume"}).status, 0);
+  int accepted = 0;
+  for (const auto& row : nlohmann::json::parse(read("out/library.json"))) {
+    EXPECT_EQ(row["Verdict"] == "accepted", row["Name"] == "mannequin_head_left_0");
+    accepted += row["Verdict"] == "accepted" ? 1 : 0;
+  }
+  EXPECT_EQ(accepted, 1);
 }
 
 TEST_F(Batch, AFullDiskStopsItAndLosesNothing) {

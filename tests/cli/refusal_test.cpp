@@ -60,7 +60,9 @@ TEST_F(Refusal, OfUnknownWords) {
 TEST_F(Refusal, OfClipSettingsThatDoNotGoTogether) {
   expect_refused({"bake", "mannequin", "-o", "a.glb", "--recover", "0.5", "--to", "clip"}, kMustChange,
                  "--to clip needs a start clip");
-  expect_refused({"bake", "mannequin", "-o", "a.bvh", "--additive"}, kMustChange, "--additive is for glTF");
+  expect_refused({"bake", "mannequin", "-o", "a.bvh", "--additive", "rest"}, kMustChange, "--additive is for glTF");
+  expect_refused({"bake", "mannequin", "-o", "a.fbx", "--additive", "identity"}, kMustChange,
+                 "--additive is for glTF");
   expect_refused({"bake", "mannequin", "-o", "a.bvh", "--append"}, kMustChange, "--append is for glTF");
   expect_refused({"bake", "mannequin", "-o", "a.glb", "--smooth", "30"}, kMustChange,
                  "--smooth 30 is not below half of the 60 frames per second");

@@ -131,6 +131,33 @@ at = 20
   EXPECT_EQ(statuses, (std::set<std::string>{"done", "failed"}));
 }
 
+TEST_F(Schema, LibraryAndEventsOfABatch) {
+  write("r.toml", R"(format = 1
+characters = ["mannequin"]
+outputs = ["glb", "events", "report"]
+[settings]
+duration = 0.4
+clip-only = true
+[[matrix]]
+hit = ["head", "chest"]
+from = ["left", "60,70"]
+[[reaction]]
+name = "walking"
+hit = "chest"
+clip = "walk"
+at = 0.2
+)");
+  EXPECT_EQ(run({"batch", "r.toml", "-o", "out", "--no-review"}).status, 0);
+  const std::string text = read("out/library.json");
+  expect_described("library", text);
+  EXPECT_EQ(Json::parse(text).size(), 5u);
+  expect_described("events", read("out/mannequin/walking.events.json"));
+  const Json report = Json::parse(read("out/mannequin/walking.json"));
+  Json row = Json::parse(text).back();
+  EXPECT_EQ(row["Name"], "mannequin_walking");
+  EXPECT_EQ(report["library"], row) << "the same record in the report";
+}
+
 TEST_F(Schema, InspectionOfCharactersAndOfOtherFiles) {
   EXPECT_GT(said("inspect", {"inspect", "mannequin", "--json"})["clips"].size(), 0u);
   write("thing.gltf",

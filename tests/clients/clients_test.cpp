@@ -47,14 +47,16 @@ constexpr std::array kFurther{"characters/quaternius_glb/modular_men/Casual.glb"
 constexpr std::array kForOptions{"basic_armature.vrm", "basic_armature_vrm1.vrm", "Male_Casual.fbx"};
 
 /// Each option that changes what a glTF output holds; every file gets a second reaction by --append.
-constexpr std::array<std::pair<const char*, void (*)(BakeSettings&)>, 11> kOptions{{
+constexpr std::array<std::pair<const char*, void (*)(BakeSettings&)>, 13> kOptions{{
     {"default", [](BakeSettings&) {}},
     {"clip-only", [](BakeSettings& s) { s.clip_only = true; }},
     {"align", [](BakeSettings& s) { s.ground.align = true; }},
     {"extra-bones_clip", [](BakeSettings& s) { s.extra_bones_play = true; }},
     {"root-motion_root", [](BakeSettings& s) { s.ground.root_motion = RootMotion::root; }},
     {"root-motion_in-place", [](BakeSettings& s) { s.ground.root_motion = RootMotion::in_place; }},
-    {"additive", [](BakeSettings& s) { s.additive = true; }},
+    {"additive_identity", [](BakeSettings& s) { s.additive = Additive::identity; }},
+    {"additive_rest", [](BakeSettings& s) { s.additive = Additive::rest; }},
+    {"all-joints", [](BakeSettings& s) { s.all_joints = true; }},
     {"rotation-type_int16", [](BakeSettings& s) { s.keys.short_rotations = true; }},
     {"recover", [](BakeSettings& s) { s.recover_s = 0.3; }},
     {"lead", [](BakeSettings& s) { s.lead_s = 0.25; }},
@@ -165,7 +167,7 @@ class Clients : public testing::Test {
       if (!write(character, settings, baked)) continue;
       settings.append = true;
       settings.hit = Segment::head;
-      if (settings.additive) settings.lead_s = 0.1;
+      if (settings.additive != Additive::off) settings.lead_s = 0.1;
       if (!write(character, settings, baked)) continue;
       Json item{{"name", source.filename().string() + " with " + option}, {"before", nullptr}};
       if (character.format == SourceFormat::gltf) item["before"] = source.string();

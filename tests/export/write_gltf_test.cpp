@@ -374,7 +374,7 @@ TEST(WriteGlb, ShowsABvhAsAFigureInMetres) {
   const Glb glb = parse_glb(*write_glb(*character, humanoid, turn_of(1), {}));
   const Json& json = glb.json;
   ASSERT_EQ(json["nodes"].size(), 4u);
-  EXPECT_EQ(json["nodes"][2]["name"], "ukemi_world");
+  EXPECT_EQ(json["nodes"][2]["name"], "walk") << "of the file";
   EXPECT_EQ(json["nodes"][2]["children"], Json::parse("[0]"));
   EXPECT_EQ(json["scenes"][0]["nodes"], Json::parse("[2,3]"));
   const auto world = world_of(json);

@@ -1,4 +1,4 @@
-#include "load/child.h"
+#include "base/child.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -20,9 +20,8 @@
 
 #include "base/descriptors.h"
 #include "base/errors.h"
-#include "load/text.h"
 
-namespace ukemi::load {
+namespace ukemi {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -171,4 +170,4 @@ Result<std::vector<std::uint8_t>> run_in_child(const std::function<std::vector<s
   return bytes;
 }
 
-}  // namespace ukemi::load
+}  // namespace ukemi

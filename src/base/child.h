@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 
-namespace ukemi::load {
+namespace ukemi {
 
 struct ChildLimits {
   std::size_t memory_bytes = std::size_t{4} << 30;  // beyond what this process has; none under a sanitizer
@@ -26,4 +26,4 @@ struct ChildLimits {
 Result<std::vector<std::uint8_t>> run_in_child(const std::function<std::vector<std::uint8_t>()>& work,
                                                const ChildLimits& limits, const std::filesystem::path& path);
 
-}  // namespace ukemi::load
+}  // namespace ukemi

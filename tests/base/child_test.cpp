@@ -1,4 +1,4 @@
-#include "load/child.h"
+#include "base/child.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace ukemi::load {
+namespace ukemi {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -124,4 +124,4 @@ TEST(Child, WritesNoFiles) {
 }
 
 }  // namespace
-}  // namespace ukemi::load
+}  // namespace ukemi

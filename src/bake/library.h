@@ -1,0 +1,28 @@
+// The library of reactions that a game chooses from: one flat row for each.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bake/baked.h"
+#include "prepare/settings.h"
+
+namespace ukemi {
+
+/// The row of a reaction as one line of JSON: an object whose members are texts, numbers and booleans, the
+/// same in every row (assets/schemas/library.schema.json). Engines' tables have no empty numbers: what does
+/// not happen is -1. `character` is its name; Name is CHARACTER_REACTION, the verdict is left empty.
+std::string library_row(const std::string& character, const BakeSettings& settings, const BakedFile& baked);
+
+struct LibraryEntry {
+  std::string row;      // of library_row
+  std::string verdict;  // a reviewer's: "", "accepted", "rejected"
+};
+
+/// An array of the rows; a Name that comes twice gets a number.
+std::string library_json(const std::vector<LibraryEntry>& entries);
+/// The same as a table (RFC 4180) whose first column is Name. Texts that a spreadsheet would take for a
+/// formula get a ' before them.
+std::string library_csv(const std::vector<LibraryEntry>& entries);
+
+}  // namespace ukemi
