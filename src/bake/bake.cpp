@@ -1,4 +1,5 @@
 #include "bake/bake.h"
+#include "bake/skin_lift.h"
 
 #include <fmt/format.h>
 
@@ -244,6 +245,7 @@ Result<BakedClip> bake(const Character& character, const BakeSettings& settings,
   auto found = search_take(character, settings, *prepared, run, diagnostics);
   if (!found) return found.error();
   warn_of_unrest(settings, *found, diagnostics);
+  warn_of_sinking_skin(character, found->skin, diagnostics);
   found->timings_s.load = load_s;
   found->timings_s.total = watch.total();
   return found;

@@ -10,6 +10,7 @@
 #include "clip/timeline.h"
 #include "export/export.h"
 #include "judge/clip_limits.h"
+#include "judge/skin_on_floor.h"
 #include "prepare/prepared.h"
 #include "rise/getting_up.h"
 #include "simulate/simulate.h"
@@ -29,6 +30,7 @@ struct BakedClip {
   ControllerReport behaviour;
   std::optional<GetUpTimes> get_up;
   Timeline timeline;               // its still tail trimmed, lead and recovery added
+  SkinOnFloor skin;                // of the whole timeline
   ClipLimits human;                // of the whole timeline, against the human range
   double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
   ResampleError resample_error;

@@ -223,7 +223,7 @@ Json limits_json(const BakedClip& outcome, const ClipLimits& written) {
   return json;
 }
 
-Json simulation_json(const SimulationFigures& figures) {
+Json simulation_json(const SimulationFigures& figures, const SkinOnFloor& skin) {
   Json json;
   json["steps"] = figures.steps;
   json["rejected_steps"] = figures.rejected_steps;
@@ -238,6 +238,8 @@ Json simulation_json(const SimulationFigures& figures) {
   json["airborne_mean_s"] = figures.airborne_mean_s;
   json["turning_mean_rad_s"] = figures.turning_mean_rad_s;
   json["floor_penetration_end_m"] = figures.floor_penetration_end_m;
+  json["skin_penetration_max_m"] = skin.max.body_m;
+  json["skin_penetration_end_m"] = skin.end_m;
   return json;
 }
 
@@ -317,7 +319,7 @@ std::string report_json(const std::string& character, const Character& loaded, c
   json["impact"] = impact_json(loaded, settings, outcome);
   json["response"] = response_json(outcome);
   json["limits"] = limits_json(outcome, baked.written);
-  json["simulation"] = simulation_json(outcome.figures);
+  json["simulation"] = simulation_json(outcome.figures, outcome.skin);
   json["clip"] = clip_json(loaded.skeleton, settings, outcome, baked.reduced);
   if (!root_curve.empty()) json["clip"]["root_curve_m"] = root_curve_json(root_curve);
   json["library"] =

@@ -8,6 +8,7 @@
 
 #include "bake/response.h"
 #include "bake/score.h"
+#include "bake/skin_lift.h"
 #include "bake/stopwatch.h"
 #include "base/errors.h"
 #include "body/ground.h"
@@ -138,9 +139,16 @@ Status make_timeline(const Character& character, const BakeSettings& settings, T
   if (outcome.get_up) add_get_up_marks(*outcome.get_up, clip);
   if (settings.extra_bones_play) play_extra_bones(actor, clip);
   if (settings.smooth_hz) smooth(clip, *settings.smooth_hz);
+  const SkinOverFloor blended(character, prepared.humanoid, prepared.body, prepared.start.pose,
+                              prepared.start.segments);
+  outcome.ground_lift_max_m =
+      std::max(outcome.ground_lift_max_m, lift_blended_skin(actor, blended, outcome.timeline));
   add_lead(actor, prepared.scene, gravity, settings.lead_s, outcome.timeline);
-  if (!settings.recover_s) return Done{};
-  return add_recovery(actor, *settings.recover_s, settings.recover_to, gravity, outcome.timeline);
+  Status status = Done{};
+  if (settings.recover_s)
+    status = add_recovery(actor, *settings.recover_s, settings.recover_to, gravity, outcome.timeline);
+  outcome.skin = skin_on_floor(blended, clip.frames);
+  return status;
 }
 
 }  // namespace

@@ -29,6 +29,9 @@ struct BodySegment {
   Vec3 centre_of_mass = Vec3::Zero();  // segment frame
   Mat3 inertia = Mat3::Zero();         // about the centre of mass, segment axes, kg m^2
   std::vector<Shape> shapes;
+  /// Outermost points of the skin where it stands far out of the shapes (a big head, a robot's hands), segment
+  /// frame, m. They meet the floor alone.
+  std::vector<Vec3> floor_points;
 };
 
 /// Contract:

@@ -2,14 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.h"
 #include "body/anthropometry.h"
+#include "body/ground.h"
 #include "body/shapes.h"
+#include "body/skin_points.h"
 
 namespace ukemi {
 namespace {
+
+// What may stand out of the shapes, over stature: lift_skin_above_floor sees to it. A hand is flat.
+constexpr double kUncovered = 0.010, kUncoveredHand = 0.021;
+constexpr int kDirections = 64;
 
 Vec3 node_in_segment(const Humanoid& humanoid, const std::vector<Affine>& world, const Rigid& segment,
                      int node) {
@@ -86,6 +93,49 @@ BodySegment weigh(Segment segment, const Vec3& end, double height_m, double mass
   return result;
 }
 
+/// How far a shape reaches along a world direction.
+double reach(const Rigid& segment, const Shape& shape, const Vec3& direction) {
+  const Rigid world_from_shape = segment * shape.segment_from_shape;
+  const Vec3 d = world_from_shape.rotation.conjugate() * direction;
+  const double own = shape.kind == ShapeKind::box ? 0.5 * shape.size.dot(d.cwiseAbs())
+                                                  : 0.5 * shape.length * std::abs(d.y()) + shape.radius;
+  return direction.dot(world_from_shape.translation) + own;
+}
+
+bool is_neighbour(Segment a, Segment b) {
+  return a == b || (a != Segment::pelvis && parent_of(a) == b) || (b != Segment::pelvis && parent_of(b) == a);
+}
+
+/// How far a segment's skin reaches beyond its own shapes and those of its neighbours, in the direction where
+/// it is the farthest.
+double uncovered(Segment segment, const std::vector<Vec3>& skin, const BodyPose& segments,
+                 const ArticulatedBody& body) {
+  double most = 0.0;
+  for (int i = 0; i < kDirections; ++i) {
+    const Vec3 d = direction(i, kDirections);
+    double of_skin = -1e300, of_shapes = -1e300;
+    for (const Vec3& point : skin) of_skin = std::max(of_skin, d.dot(segments[index(segment)] * point));
+    for (int s = 0; s < kSegmentCount; ++s)
+      for (const Shape& shape : body.segments[s].shapes)
+        if (is_neighbour(segment, segment_at(s)))
+          of_shapes = std::max(of_shapes, reach(segments[s], shape, d));
+    most = std::max(most, of_skin - of_shapes);
+  }
+  return most;
+}
+
+/// The skin that shapes cover badly gets points of its own on the floor.
+void add_floor_points(const PerSegment<std::vector<Vec3>>& skin, const BodyPose& segments,
+                      ArticulatedBody& body) {
+  for (int s = 0; s < kSegmentCount; ++s) {
+    BodySegment& segment = body.segments[s];
+    if (segment.shapes.empty() || skin[s].empty()) continue;
+    const bool is_hand = segment_at(s) == Segment::hand_l || segment_at(s) == Segment::hand_r;
+    const double allowed = (is_hand ? kUncoveredHand : kUncovered) * body.height_m;
+    if (uncovered(segment_at(s), skin[s], segments, body) > allowed) segment.floor_points = skin[s];
+  }
+}
+
 }  // namespace
 
 Result<ArticulatedBody> build_body(const Character& character, const Humanoid& humanoid, const Pose& pose,
@@ -107,6 +157,7 @@ Result<ArticulatedBody> build_body(const Character& character, const Humanoid& h
     if (!humanoid.segments[s].fused())
       body.segments[s].shapes = fit_shapes(segment, ends[s], body.height_m, skin[s]);
   }
+  add_floor_points(outermost_skin(character, humanoid, pose, segments, body), segments, body);
   for (int j = 0; j < kJointCount; ++j) {
     const Rigid parent_from_world = segments[index(parent_of(joint_at(j)))].inverse();
     const Rigid& child = segments[index(child_of(joint_at(j)))];

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "humanoid/skin.h"
+#include "body/skin_points.h"
 
 namespace ukemi {
 namespace {
@@ -206,35 +206,8 @@ Shape foot(const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
 PerSegment<std::vector<Vec3>> skin_of_segments(const Character& character, const Humanoid& humanoid,
                                                const Pose& pose, const BodyPose& segments) {
   PerSegment<std::vector<Vec3>> result;
-  const auto owner = segments_of_nodes(character.skeleton, humanoid);
-  const std::vector<Affine> world = world_transforms(character.skeleton, pose);
-  PerSegment<Rigid> segment_from_world;
-  for (int s = 0; s < kSegmentCount; ++s) segment_from_world[s] = segments[s].inverse();
-  const auto add = [&](const std::optional<Segment>& s, const Vec3& file_position) {
-    if (!s) return;
-    result[index(*s)].push_back(segment_from_world[index(*s)] * (humanoid.world_from_file * file_position));
-  };
-  for (const MeshPart& part : character.parts) {
-    if (is_scenery(character.skeleton, humanoid, part)) continue;
-    if (part.skin < 0) {
-      for (const auto& p : part.positions) add(owner[part.node], world[part.node] * p.cast<double>());
-      continue;
-    }
-    const Skin& skin = character.skins[part.skin];
-    std::vector<Affine> world_from_mesh;
-    for (std::size_t j = 0; j < skin.joints.size(); ++j)
-      world_from_mesh.push_back(world[skin.joints[j]] * skin.inverse_bind[j]);
-    for (std::size_t v = 0; v < part.positions.size(); ++v) {
-      Vec3 p = Vec3::Zero();
-      int heaviest = 0;
-      for (int k = 0; k < 4; ++k) {
-        p += static_cast<double>(part.weights[v][k]) *
-             (world_from_mesh[part.joints[v][k]] * part.positions[v].cast<double>());
-        if (part.weights[v][k] > part.weights[v][heaviest]) heaviest = k;
-      }
-      add(owner[skin.joints[part.joints[v][heaviest]]], p);
-    }
-  }
+  for_each_skin_vertex(character, humanoid, pose, segments,
+                       [&](const SkinVertex& v) { result[index(v.segment)].push_back(v.place); });
   return result;
 }
 

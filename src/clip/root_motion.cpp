@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clip/ground_motion.h"
+#include "export/lift_hips.h"
 #include "export/root_joint.h"
 
 namespace ukemi {
@@ -78,7 +79,10 @@ Result<ExportedClip> exported_clip(const Character& character, const Humanoid& h
                                Vec3::Zero()};
     for (Pose& pose : frames) pose = to_origin.moved(character.skeleton, humanoid, pose);
   }
-  if (placement.root_motion == RootMotion::hips || frames.empty()) return exported;
+  if (placement.root_motion == RootMotion::hips || frames.empty()) {
+    lift_hips(character, humanoid, frames);
+    return exported;
+  }
   for (const Pose& pose : frames)
     exported.root_curve.push_back(level(segments_of(character.skeleton, humanoid, pose)[pelvis].translation));
   const Vec3 first = exported.root_curve.front();
@@ -96,6 +100,8 @@ Result<ExportedClip> exported_clip(const Character& character, const Humanoid& h
     if (exported.root_joint >= 0)
       displace(skeleton, exported.humanoid, {exported.root_joint}, exported.root_curve[f], frames[f]);
   }
+  lift_hips(character, exported.humanoid,
+            placement.root_motion == RootMotion::root ? exported.on_hips.frames : frames);
   return exported;
 }
 

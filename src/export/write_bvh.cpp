@@ -10,6 +10,7 @@
 #include "base/errors.h"
 #include "export/euler.h"
 #include "export/export.h"
+#include "export/lift_hips.h"
 
 namespace ukemi {
 namespace {
@@ -202,23 +203,6 @@ struct Misfit {
 
 // ---- the source's hierarchy
 
-bool has_all_positions(const BvhJoint& joint) {
-  return std::count_if(joint.channels.begin(), joint.channels.end(),
-                       [](BvhChannel channel) { return !is_rotation(channel); }) == 3;
-}
-
-/// Moves the way of hips without position channels onto the nearest joint above that has them.
-void lift_hips(const std::vector<BvhJoint>& joints, int hips, Pose& frame) {
-  Vec3 shift = frame[hips].translation - joints[hips].offset;
-  for (int above = joints[hips].parent; above >= 0; above = joints[above].parent) {
-    shift = frame[above].rotation * shift;
-    if (!has_all_positions(joints[above])) continue;
-    frame[above].translation += shift;
-    frame[hips].translation = joints[hips].offset;
-    return;
-  }
-}
-
 BvhFile file_of_source(const Character& character, const Humanoid& humanoid, const Clip& clip,
                        Diagnostics& diagnostics) {
   BvhFile file{{}, clip.frames, 1.0 / clip.fps, character.bvh->positions_add, character.metres_per_unit};
@@ -227,8 +211,7 @@ BvhFile file_of_source(const Character& character, const Humanoid& humanoid, con
     file.joints.push_back({node.name, node.parent, node.rest.translation, character.bvh->channels[i],
                            character.bvh->end_site[i]});
   }
-  if (humanoid.root >= 0 && !has_all_positions(file.joints[humanoid.root]))
-    for (Pose& frame : file.frames) lift_hips(file.joints, humanoid.root, frame);
+  lift_hips(character, humanoid, file.frames);
   Misfit misfit;
   for (const Pose& frame : file.frames) misfit.look_at(file, frame);
   misfit.warn(character, humanoid.world_from_file.scale, diagnostics);

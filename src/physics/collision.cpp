@@ -12,6 +12,8 @@ namespace {
 constexpr int kMaxContacts = 4;
 constexpr int kMaxBoxContacts = 3;        // a fourth adds nothing but rows
 constexpr int kFullFrictionContacts = 2;  // of a pair
+constexpr double kNear = 0.005;           // m: points so near to one another carry as one
+constexpr double kPointRadius = 1e-3;     // m; never asked for
 constexpr double kSoftErp = 0.2;
 constexpr double kSoftCfm = 1e-5;
 
@@ -46,6 +48,44 @@ bool boxes_overlap(dGeomID a, dGeomID b) {
 
 bool is_foot(Segment s) { return s == Segment::foot_l || s == Segment::foot_r; }
 
+/// Of points below the floor (y = 0) the deepest, the one farthest from it, and the one farthest from the
+/// line through both.
+std::vector<Vec3> carrying_points(const std::vector<Vec3>& below) {
+  std::vector<Vec3> chosen;
+  const auto add_best = [&](auto&& value) {
+    const auto best = std::max_element(below.begin(), below.end(),
+                                       [&](const Vec3& a, const Vec3& b) { return value(a) < value(b); });
+    if (best != below.end() && (chosen.empty() || value(*best) > kNear)) chosen.push_back(*best);
+  };
+  add_best([](const Vec3& p) { return -p.y(); });
+  if (!chosen.empty()) add_best([&](const Vec3& p) { return (p - chosen[0]).norm(); });
+  if (chosen.size() < 2) return chosen;
+  const Vec3 along = (chosen[1] - chosen[0]).normalized();
+  add_best([&](const Vec3& p) { return (p - chosen[0]).cross(along).norm(); });
+  return chosen;
+}
+
+/// Contacts of points with the floor, as dCollide has them.
+int points_on_floor(const std::vector<Vec3>& points, dGeomID floor, dGeomID geom,
+                    std::array<dContactGeom, kMaxContacts>& contacts) {
+  const Rigid world_from_body{quat(dBodyGetQuaternion(dGeomGetBody(geom))),
+                              vec3(dBodyGetPosition(dGeomGetBody(geom)))};
+  std::vector<Vec3> below;
+  for (const Vec3& point : points)
+    if (const Vec3 place = world_from_body * point; place.y() < 0.0) below.push_back(place);
+  int count = 0;
+  for (const Vec3& place : carrying_points(below)) {
+    dContactGeom& contact = contacts[static_cast<std::size_t>(count++)];
+    contact = {};
+    contact.depth = -place.y();
+    contact.g1 = floor;
+    contact.g2 = geom;
+    Eigen::Map<Vec3>(contact.pos) = place;
+    Eigen::Map<Vec3>(contact.normal) = -Vec3::UnitY();
+  }
+  return count;
+}
+
 Vec3 velocity_at(dBodyID body, const dReal* point) {
   if (body == nullptr) return Vec3::Zero();
   dVector3 v;
@@ -60,6 +100,9 @@ Collision::Collision(OdeWorld& world, const Model& model, const ArticulatedBody&
   colliders_.push_back({dCreatePlane(nullptr, 0, 1, 0, 0), -1, Segment::pelvis, false});
   for (int s = 0; s < kSegmentCount; ++s)
     for (const Shape& shape : body.segments[s].shapes) add_shape(model, segment_at(s), shape);
+  for (int s = 0; s < kSegmentCount; ++s)
+    if (!body.segments[s].floor_points.empty())
+      add_floor_points(model, segment_at(s), body.segments[s].floor_points);
   for (std::size_t i = 1; i < colliders_.size(); ++i) pairs_.push_back({0, i, PairKind::floor, 0.0});
   if (self_collision) make_self_pairs();
 }
@@ -90,11 +133,18 @@ void Collision::add_shape(const Model& model, Segment segment, const Shape& shap
   colliders_.push_back(collider);
 }
 
+void Collision::add_floor_points(const Model& model, Segment segment, const std::vector<Vec3>& points) {
+  Collider collider{dCreateSphere(nullptr, kPointRadius), model.body_of(segment), segment, false, points};
+  for (Vec3& point : collider.points) point = model.segment_in_body(segment) * point;
+  dGeomSetBody(collider.geom, model.bodies()[collider.body].id);
+  colliders_.push_back(std::move(collider));
+}
+
 void Collision::make_self_pairs() {
   for (std::size_t a = 1; a < colliders_.size(); ++a)
     for (std::size_t b = a + 1; b < colliders_.size(); ++b)
-      if (colliders_[a].body != colliders_[b].body &&
-          may_collide(colliders_[a].segment, colliders_[b].segment))
+      if (colliders_[a].body != colliders_[b].body && colliders_[a].points.empty() &&
+          colliders_[b].points.empty() && may_collide(colliders_[a].segment, colliders_[b].segment))
         pairs_.push_back({a, b, PairKind::self, 0.0});
 }
 
@@ -104,7 +154,7 @@ void Collision::add_prop(dGeomID geom, dBodyID body) {
   const bool box = dGeomGetClass(geom) == dBoxClass;
   colliders_.push_back({geom, -1, Segment::pelvis, box});
   for (std::size_t other = body == nullptr ? 1 : 0; other < i; ++other)
-    pairs_.push_back({other, i, PairKind::prop, 0.0});
+    if (colliders_[other].points.empty()) pairs_.push_back({other, i, PairKind::prop, 0.0});
 }
 
 void Collision::accept_overlaps() {
@@ -123,7 +173,8 @@ Contacts Collision::find(bool whole_soles) const {
     if (pair.a != 0 && !boxes_overlap(a.geom, b.geom)) continue;
     const bool sole = whole_soles && pair.kind == PairKind::floor && is_foot(b.segment);
     const int most = (a.box || b.box) && !sole ? kMaxBoxContacts : kMaxContacts;
-    const int count = dCollide(a.geom, b.geom, most, buffer.data(), sizeof(dContactGeom));
+    const int count = b.points.empty() ? dCollide(a.geom, b.geom, most, buffer.data(), sizeof(dContactGeom))
+                                       : points_on_floor(b.points, a.geom, b.geom, buffer);
     for (int i = 0; i < count; ++i) {
       const dContactGeom& touch = buffer[i];
       const double depth = touch.depth - pair.accepted;
@@ -216,7 +267,8 @@ std::optional<Collision::FirstTouch> Collision::first_touch(dGeomID probe, const
     dGeomSetPosition(probe, at.x(), at.y(), at.z());
     dContactGeom contact;
     for (const Collider& collider : colliders_) {
-      if (collider.body < 0 || !boxes_overlap(probe, collider.geom)) continue;
+      if (collider.body < 0 || !collider.points.empty()) continue;
+      if (!boxes_overlap(probe, collider.geom)) continue;
       if (dCollide(probe, collider.geom, 1, &contact, sizeof contact) > 0) {
         found = FirstTouch{distance, collider.segment};
         return true;

@@ -70,6 +70,7 @@ class Collision {
     int body = -1;  // of the model; -1 floor or prop
     Segment segment = Segment::pelvis;
     bool box = false;
+    std::vector<Vec3> points{};  // frame of the body, m: all that there is of it; it meets the floor alone
   };
   struct Pair {
     std::size_t a = 0, b = 0;
@@ -77,6 +78,7 @@ class Collision {
     double accepted = 0.0;  // overlap at the start, m
   };
   void add_shape(const Model& model, Segment segment, const Shape& shape);
+  void add_floor_points(const Model& model, Segment segment, const std::vector<Vec3>& points);
   void make_self_pairs();
 
   OdeWorld& world_;

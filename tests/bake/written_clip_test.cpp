@@ -1,9 +1,11 @@
 // What a bake writes, read back: its poses, and its joints in the range that it carries.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
 
 #include "bake/bake.h"
+#include "check/difference.h"
 #include "judge/rom_figures.h"
 #include "load/load.h"
 
@@ -197,6 +199,50 @@ TEST(WrittenClip, TheBvhOfAMirroredOrSmallFigureIsItsGlb) {
     }
     EXPECT_LT(largest, 0.0005) << name;
   }
+}
+
+/// The mannequin's BVH with a root of six channels above hips that only turn, as iClone has it.
+Character with_root_above_hips() {
+  std::ifstream file(std::string(UKEMI_ASSETS_FOLDER) + "/characters/mannequin.bvh");
+  std::string text, line;
+  bool in_motion = false;
+  while (std::getline(file, line)) {
+    if (line.starts_with("ROOT "))
+      line =
+          "ROOT Base\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation "
+          "Xrotation\n"
+          "JOINT " +
+          line.substr(5);
+    if (const auto six = line.find("CHANNELS 6 Xposition Yposition Zposition"); six == 1)
+      line = "CHANNELS 3" + line.substr(41);
+    if (line == "MOTION") line = "}\nMOTION";
+    if (in_motion) line.insert(line.find(' ', line.find(' ', line.find(' ') + 1) + 1), " 0 0 0");
+    in_motion = in_motion || line.starts_with("Frame Time");
+    text += line + "\n";
+  }
+  Diagnostics diagnostics;
+  auto character = read_bvh(text, "hips_below_root.bvh", diagnostics);
+  if (!character) throw std::runtime_error(character.error().message());
+  return std::move(*character);
+}
+
+TEST(WrittenClip, HipsThatOnlyTurnMoveTheirRootInEveryFormat) {
+  const Character character = with_root_above_hips();
+  ASSERT_EQ(character.bvh->channels[1].size(), 3u);
+  BakeSettings settings;
+  settings.simulation.duration_s = 1.0;
+  settings.preset = "tackle";
+  settings.keys.enabled = false;
+  Diagnostics diagnostics;
+  const Written glb = written(character, settings, "hit.glb", diagnostics);
+  const Written bvh = written(character, settings, "hit.bvh", diagnostics);
+  const auto difference = difference_of(
+      {&glb.file, &glb.file.animations.back(), map_humanoid(glb.file, {}, diagnostics)->world_from_file},
+      {&bvh.file, &bvh.file.animations.back(), map_humanoid(bvh.file, {}, diagnostics)->world_from_file}, {});
+  ASSERT_TRUE(difference);
+  EXPECT_TRUE(difference->only_in_b.empty());
+  EXPECT_GT(difference->joints.size(), 15u);
+  for (const JointDifference& joint : difference->joints) EXPECT_LT(joint.position_mm, 0.5) << joint.joint;
 }
 
 TEST(WrittenClip, OneFigureOfTwoMovesAsItDoesAlone) {
