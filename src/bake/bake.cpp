@@ -1,5 +1,4 @@
 #include "bake/bake.h"
-#include "bake/skin_lift.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +12,7 @@
 #include "bake/report.h"
 #include "bake/search.h"
 #include "bake/sheet.h"
+#include "bake/skin_lift.h"
 #include "bake/stopwatch.h"
 #include "base/character_path.h"
 #include "base/errors.h"

@@ -6,6 +6,7 @@
 #include "body/on_ground.h"
 #include "humanoid/rotations.h"
 #include "prepare/impact.h"
+#include "prepare/needs.h"
 #include "prepare/start.h"
 
 namespace ukemi {
@@ -115,6 +116,7 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
   auto scene = scene_of(settings, prepared.start.segments);
   if (!scene) return scene.error();
   prepared.scene = *scene;
+  for (const std::string& idle : idle_settings(settings, prepared.scene.kind)) diagnostics.warn("", idle);
   return prepared;
 }
 

@@ -1,0 +1,57 @@
+#include "prepare/needs.h"
+
+#include <gtest/gtest.h>
+
+#include "prepare/setting_table.h"
+
+namespace ukemi {
+namespace {
+
+using Said = std::vector<std::string>;
+
+Said said_of(const std::vector<std::pair<std::string, std::string>>& values,
+             SceneKind scene = SceneKind::ball) {
+  BakeSettings settings;
+  for (const auto& [name, value] : values) {
+    const auto setting = find_setting(name);
+    EXPECT_TRUE(setting) << name;
+    EXPECT_TRUE((*setting)->set(settings, value)) << name;
+  }
+  return idle_settings(settings, scene);
+}
+
+TEST(Needs, ASettingWithoutWhatItNeedsIsNamed) {
+  EXPECT_EQ(said_of({{"to", "clip"}}), Said{"--to has no effect without --recover"});
+  EXPECT_EQ(said_of({{"fall-height", "1"}}), Said{"--fall-height has no effect without --scene fall"});
+  EXPECT_EQ(said_of({{"hit", "head"}}, SceneKind::fall),
+            Said{"--hit has no effect without a scene that hits"});
+  EXPECT_EQ(said_of({{"tone", "1"}}), Said{"--tone has no effect without --behaviour limp"});
+  EXPECT_EQ(said_of({{"steps", "2"}, {"behaviour", "limp"}}),
+            Said{"--steps has no effect without a body that is alive (--behaviour)"});
+}
+
+TEST(Needs, ASettingWithWhatItNeedsIsNot) {
+  EXPECT_EQ(said_of({}), Said{});
+  EXPECT_EQ(said_of({{"to", "clip"}, {"recover", "1"}}), Said{});
+  EXPECT_EQ(said_of({{"fall-height", "1"}}, SceneKind::fall), Said{});
+  EXPECT_EQ(said_of({{"tone", "1"}, {"behaviour", "limp"}}), Said{});
+  EXPECT_EQ(said_of({{"slope-deg", "30"}, {"aim-up", "0.1"}}, SceneKind::slope), Said{});
+}
+
+TEST(Needs, OfFilesAreThoseOfTheirFormats) {
+  BakeSettings settings;
+  settings.clip_only = true;
+  settings.bvh_metres_per_unit = 1.0;
+  EXPECT_EQ(idle_settings(settings, SceneKind::ball), Said{}) << "in memory";
+  settings.outputs = {"a.bvh"};
+  EXPECT_EQ(idle_settings(settings, SceneKind::ball),
+            Said{"--clip-only has no effect without a glTF or FBX to write"});
+  settings.outputs = {"a.glb"};
+  EXPECT_EQ(idle_settings(settings, SceneKind::ball),
+            Said{"--bvh-unit has no effect without a BVH to write"});
+  settings.outputs = {"a.glb", "a.bvh"};
+  EXPECT_EQ(idle_settings(settings, SceneKind::ball), Said{});
+}
+
+}  // namespace
+}  // namespace ukemi
