@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "base/errors.h"
+#include "base/file_names.h"
+#include "prepare/impact.h"
 #include "prepare/settings.h"
 
 namespace ukemi {
@@ -29,7 +31,34 @@ bool same_file(const fs::path& a, const fs::path& b) {
          fs::weakly_canonical(fs::absolute(b, error), error);
 }
 
+bool names_folder(const fs::path& path) {
+  std::error_code error;
+  return !path.empty() && (!path.has_filename() || (!path.has_extension() && fs::is_directory(path, error)));
+}
+
+/// "hero_head_left_punch", "hero_pelvis_back_slope", "hero_head_left_punch_seed3"
+std::string stem_of(const std::string& character, const BakeSettings& settings) {
+  const std::string what = settings.scene ? std::string(name(*settings.scene)) : settings.preset;
+  std::string stem =
+      fmt::format("{}_{}_{}", fs::path(character).stem().string(), reaction_name(settings), what);
+  if (settings.seed > 0.0) stem += fmt::format("_seed{}", settings.seed);
+  return file_name_from(stem);
+}
+
 }  // namespace
+
+void name_outputs(const std::string& character, BakeSettings& settings) {
+  const std::string stem = stem_of(character, settings);
+  const auto complete = [&stem](fs::path& path, const char* extension) {
+    if (names_folder(path)) path /= stem + extension;
+  };
+  const auto format = output_format(character);
+  const char* own = format == OutputFormat::bvh ? ".bvh" : format == OutputFormat::fbx ? ".fbx" : ".glb";
+  for (fs::path& output : settings.outputs) complete(output, own);
+  complete(settings.sheet, ".png");
+  complete(settings.preview, ".webp");
+  complete(settings.report, ".json");
+}
 
 std::optional<OutputFormat> output_format(const fs::path& path) {
   const std::string extension = lower_extension(path);

@@ -16,6 +16,11 @@ enum class OutputFormat { glb, gltf, vrm, bvh, fbx, vrma };
 /// By the extension, case ignored; nothing for any other.
 std::optional<OutputFormat> output_format(const std::filesystem::path& path);
 
+/// Names the outputs that are given as a folder, one that exists or a name that ends in '/':
+/// FOLDER/CHARACTER_HIT_FROM_PRESET.glb (.bvh for a BVH, .fbx for an FBX), and likewise sheet, preview and
+/// report.
+void name_outputs(const std::string& character, BakeSettings& settings);
+
 /// Whether a file can be made at `path`: its folder exists and may be written to, and no directory is in the
 /// way. Errors: output.
 Status check_writable(const std::filesystem::path& path);

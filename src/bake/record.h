@@ -71,7 +71,8 @@ struct ReactionRecord {
 
 /// One line of JSON, without its end.
 std::string record_line(const ReactionRecord& record);
-/// Nothing where the line is no record: a line that was cut off, or names files outside the batch's folder.
+/// Nothing where the line is not a record: a line that was cut off, or names files outside the batch's
+/// folder.
 std::optional<ReactionRecord> parse_record(std::string_view line);
 
 }  // namespace ukemi

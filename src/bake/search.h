@@ -25,12 +25,10 @@ int most_trials(const BakeSettings& settings);
 std::vector<Choice> choices_for(const BakeSettings& settings);
 
 /// 1. Without an outcome: the trial with the best score.
-/// 2. With one: the best of those that reach it. Trials end with the first that stands with at most one step,
-/// or
-///    that falls and meets nine tenths of the criteria.
-/// 3. Where none does and --assist is on, a force from outside, found by halving; else the first trial, with
-/// a
-///    warning.
+/// 2. With one: the best of those that reach it. Trials end with the first that stands with at most one
+///    step, or that falls and meets nine tenths of the criteria.
+/// 3. Where none does and --assist is on, a force from outside, found by halving; else the first trial,
+///    with a warning.
 /// Warnings of the trial that is kept. Errors: those of the takes.
 Result<BakedClip> search_take(const Character& character, const BakeSettings& settings,
                               const Prepared& prepared, const SearchRun& run, Diagnostics& diagnostics);

@@ -163,8 +163,10 @@ Result<fs::path> find_asset(const fs::path& relative) {
   if (const char* folder = std::getenv("UKEMI_ASSETS")) folders.emplace_back(folder);
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(program.parent_path().parent_path() / "share" / "ukemi");
-  folders.emplace_back(UKEMI_SOURCE_ASSETS);
+  if (!error) {
+    folders.push_back(program.parent_path().parent_path() / "share" / "ukemi");
+    folders.push_back(program.parent_path() / "ukemi-assets");
+  }
   for (const fs::path& folder : folders)
     if (fs::exists(folder / relative, error)) return folder / relative;
   return input_error(relative, "the program's own file is missing",

@@ -54,7 +54,7 @@ std::optional<std::filesystem::path> file_below(const std::filesystem::path& fol
                                                 const std::filesystem::path& relative);
 
 /// A file of the project's assets folder: $UKEMI_ASSETS, share/ukemi beside the program's folder, or the
-/// source tree.
+/// source tree (a build has a link to it beside its programs).
 Result<std::filesystem::path> find_asset(const std::filesystem::path& relative);
 
 }  // namespace ukemi

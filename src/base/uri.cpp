@@ -3,7 +3,7 @@
 namespace ukemi {
 namespace {
 
-/// -1 for what is no digit.
+/// -1 for what is not a digit.
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;

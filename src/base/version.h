@@ -5,7 +5,7 @@
 
 namespace ukemi {
 
-/// "ukemi 0.1.0"
+/// "ukemi 0.2.0"
 std::string generator();
 
 }  // namespace ukemi

@@ -16,7 +16,8 @@ namespace ukemi {
 namespace fs = std::filesystem;
 namespace {
 
-/// Files beside a .gltf that its buffers and images name. What is no JSON names none: loading refuses it.
+/// Files beside a .gltf that its buffers and images name. A file that is not JSON names none: loading refuses
+/// it.
 std::vector<fs::path> files_named_by(const fs::path& gltf, std::span<const std::uint8_t> bytes) {
   std::vector<fs::path> files;
   const auto json = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);

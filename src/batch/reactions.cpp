@@ -52,6 +52,16 @@ std::map<std::string, std::string> values_in_force(const BakeSettings& settings)
   return values;
 }
 
+/// The same values under every word that a setting goes by.
+std::map<std::string, std::string> with_other_words(std::map<std::string, std::string> values) {
+  for (const Setting& setting : bake_settings()) {
+    const auto value = values.find(std::string(setting.name));
+    if (value == values.end()) continue;
+    for (const std::string_view word : setting.also) values[std::string(word)] = value->second;
+  }
+  return values;
+}
+
 /// A file's name says enough.
 std::string short_value(const std::string& value) {
   return value.find('/') == value.npos ? value : fs::path(value).stem().string();
@@ -178,7 +188,7 @@ class Expansion {
     reaction.varies = has_any(matrix.jitter);
     reaction.settings = settings;
     reaction.written = values_in_force(settings);
-    auto parts = reaction.written;
+    auto parts = with_other_words(reaction.written);
     const auto digits = fmt::format("{}", matrix.variations - 1).size();
     parts["variation"] = fmt::format("{:0{}}", variation, digits);
     parts["character"] = folder;

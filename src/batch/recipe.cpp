@@ -74,7 +74,10 @@ std::string_view type_name(const toml::node& node) {
 
 std::vector<std::string> setting_names() {
   std::vector<std::string> names;
-  for (const Setting& setting : bake_settings()) names.emplace_back(setting.name);
+  for (const Setting& setting : bake_settings()) {
+    names.emplace_back(setting.name);
+    names.insert(names.end(), setting.also.begin(), setting.also.end());
+  }
   return names;
 }
 
@@ -309,6 +312,13 @@ class RecipeReader {
          near.empty() ? "ukemi recipe prints all settings" : fmt::format("did you mean '{}'?", near));
   }
 
+  /// "pre-roll" and "lead" are one setting: it may stand in a table once.
+  void check_given_once(bool given, const Entry& entry, const Setting& setting) const {
+    if (given)
+      fail(entry.at, fmt::format("'{}' stands here under another name, too", entry.key),
+           fmt::format("write {} once", setting.shown()));
+  }
+
   RecipeSettings read_settings(const toml::node& node, const std::vector<std::string>& other_keys) const {
     const toml::table* table = node.as_table();
     if (!table) fail(node, "settings are not a table", "write [settings] and a line for each setting below");
@@ -319,7 +329,9 @@ class RecipeReader {
       if (entry.node->is_array() && setting.kind != Setting::Kind::list)
         fail(*entry.node, fmt::format("'{}' has several values here", entry.key),
              "several values make a matrix: write them below [[matrix]]");
-      settings[entry.key] = value_of(setting, *entry.node);
+      const std::string name(setting.name);
+      check_given_once(settings.contains(name), entry, setting);
+      settings[name] = value_of(setting, *entry.node);
     }
     return settings;
   }
@@ -427,9 +439,14 @@ class RecipeReader {
     for (const Entry& entry : entries_of(table)) {
       if (std::find(kMatrixKeys.begin(), kMatrixKeys.end(), entry.key) != kMatrixKeys.end()) continue;
       const Setting& setting = need_setting(entry, kMatrixKeys);
+      const std::string name(setting.name);
+      const bool given =
+          matrix.settings.contains(name) || std::any_of(matrix.axes.begin(), matrix.axes.end(),
+                                                        [&](const auto& axis) { return axis.first == name; });
+      check_given_once(given, entry, setting);
       const toml::array* values = entry.node->as_array();
       if (!values || setting.kind == Setting::Kind::list) {
-        matrix.settings[entry.key] = value_of(setting, *entry.node);
+        matrix.settings[name] = value_of(setting, *entry.node);
         continue;
       }
       if (!may_have_axes)
@@ -437,7 +454,7 @@ class RecipeReader {
              "several values make a matrix: write [[matrix]] in place of [[reaction]]");
       if (values->empty())
         fail(*entry.node, fmt::format("'{}' has no values", entry.key), "give at least one value");
-      matrix.axes.push_back({entry.key, {}});
+      matrix.axes.push_back({name, {}});
       for (const toml::node& value : *values) matrix.axes.back().second.push_back(value_of(setting, value));
     }
   }

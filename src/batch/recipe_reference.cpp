@@ -117,10 +117,10 @@ std::string reference_of(const Setting& setting) {
   if (!notes.empty()) help += fmt::format(" [{}]", fmt::join(notes, "; "));
   const std::string text = explained(help);
   if (has_default)
-    return text + fmt::format("# {} = {}\n", setting.name, toml_value(setting, values.front()));
+    return text + fmt::format("# {} = {}\n", setting.shown(), toml_value(setting, values.front()));
   const std::string value = toml_value(setting, setting.value.empty() ? "..." : setting.value);
   const bool list = setting.kind == Setting::Kind::list;
-  return text + fmt::format("##   {} = {}\n", setting.name, list ? "[" + value + "]" : value);
+  return text + fmt::format("##   {} = {}\n", setting.shown(), list ? "[" + value + "]" : value);
 }
 
 }  // namespace

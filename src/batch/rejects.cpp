@@ -79,7 +79,7 @@ Status take_rejects(const fs::path& file, BatchPlan& plan) {
     for (const Json& entry : json.value("accepts", Json::array()))
       if (const Status status = accept(file, entry, indices, plan); !status) return status;
   } catch (const Json::exception& exception) {
-    return refused(file, fmt::format("is no list of verdicts: {}", exception.what()));
+    return refused(file, fmt::format("is not a list of verdicts: {}", exception.what()));
   }
   return Done{};
 }

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "bake/bake.h"
+#include "base/segments.h"
+#include "base/version.h"
 #include "prepare/impact.h"
 #include "prepare/setting_table.h"
 #include "prepare/settings.h"
-#include "base/segments.h"
-#include "base/version.h"
 
 namespace ukemi {
 namespace {
@@ -113,6 +113,7 @@ Result<std::string> settings_json() {
     const auto choices = choices_of(setting);
     if (!choices) return choices.error();
     json["settings"].push_back({{"name", setting.name},
+                                {"also", Json(setting.also)},
                                 {"group", setting.group},
                                 {"type", type_of(setting)},
                                 {"default", default_of(setting)},

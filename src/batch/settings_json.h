@@ -12,7 +12,7 @@ namespace ukemi {
 /// "value", "help"}] }.
 /// 1. The order is that of the help. What does not apply is null.
 /// 2. "default" is a number, a text, true or false, or a list; null where the program finds the value out,
-/// and then "unset" says from what.
+///    and then "unset" says from what.
 /// 3. "choices" of a choice are all that is legal; those of a text are the words that stand for something.
 /// 4. "value" is the placeholder of the help, "unit" the unit of a number ("1": none).
 /// Errors: input (the presets cannot be read).

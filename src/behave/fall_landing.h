@@ -23,7 +23,7 @@ class Landing {
   const ArmLanding& arm(BodySide side) const { return arms_[index(side)]; }
   /// Since when a knee has been on the floor in a forward fall.
   const std::optional<double>& kneels_s() const { return kneels_s_; }
-  /// Since when the body is down: its trunk, an upper arm, a thigh that is no forward fall's knee, or both
+  /// Since when the body is down: its trunk, an upper arm, a thigh that is not a forward fall's knee, or both
   /// arms braked.
   const std::optional<double>& landed_s() const { return landed_s_; }
   /// Since when pelvis, abdomen or chest has been on the floor.

@@ -24,7 +24,7 @@ Error map_error(const std::string& file, std::string what, std::string fix,
 }
 
 Error no_text(const std::string& file, std::string_view segment, const toml::source_region& where = {}) {
-  return map_error(file, fmt::format("the node of '{}' is no text", segment),
+  return map_error(file, fmt::format("the node of '{}' is not a text", segment),
                    "write its name or \"#INDEX\" in quotes", where);
 }
 

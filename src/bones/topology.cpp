@@ -121,7 +121,7 @@ std::vector<Pair> mirrored_pairs(const Tree& tree, int fork) {
   return pairs;
 }
 
-/// The far end of the chain that rises from the arms' fork and is no limb.
+/// The far end of the chain that rises from the arms' fork and is not a limb.
 int end_above(const Tree& tree, int fork, const Pair& arms, const Pair& legs) {
   const auto carries_limb = [&](int node) {
     for (const LimbShape* limb : {&arms.a, &arms.b, &legs.a, &legs.b})

@@ -30,7 +30,7 @@ struct Calibration {
 /// Speed at which a joint that hardly moves in the clips is held, degrees per second.
 inline constexpr double kThresholdFloor = 120.0;
 
-/// Errors: those of loading; a file that is no humanoid.
+/// Errors: those of loading; a file that is not a humanoid.
 Result<Calibration> calibrate(const CalibrationSettings& settings, Diagnostics& diagnostics);
 
 /// As load_active_thresholds reads it, with what it was measured from.

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "bake/bake.h"
+#include "bake/outputs.h"
 #include "bake/report.h"
 #include "bake/response.h"
 #include "base/errors.h"
@@ -28,10 +29,14 @@ struct BakeRequest {
 void declare_out(Options& options, BakeRequest& request) {
   BakeSettings& settings = request.settings;
   options.group("out");
-  options.paths("-o,--output", settings.outputs, "the clip, as .glb, .gltf, .fbx, .bvh, .vrm (of a VRM) or .vrma (for any VRM)");
-  options.flag("--append", settings.append, "add the clip to those of a glTF or FBX output that exists");
+  options.paths("-o,--output", settings.outputs,
+                "the clip, as .glb, .gltf, .fbx, .bvh, .vrm (of a VRM) or .vrma (for any VRM); a folder: "
+                "named there by "
+                "character, hit and preset");
   options.path("--sheet", settings.sheet, "contact sheet, as .png");
   options.path("--preview", settings.preview, "moving picture, as .webp (640x360, 30 a second)");
+  options.everyday(false);
+  options.flag("--append", settings.append, "add the clip to those of a glTF or FBX output that exists");
   options.custom(
       "--theme", "light|dark", [&](const std::string& text) { return take_theme(text, settings.theme); },
       "colours of the pictures [default light]");
@@ -49,7 +54,8 @@ Status check(const BakeRequest& request) {
       settings.report.empty() && settings.events.empty() && !request.json)
     return usage_error(
         "nothing to write",
-        "add -o hit.glb (or .gltf, .fbx, .bvh), --sheet, --preview, --report, --events or --json");
+        "add -o hit.glb (or .gltf, .fbx, .bvh, .vrma, or a folder), --sheet, --preview, --report, "
+        "--events or --json");
   return Done{};
 }
 
@@ -109,6 +115,7 @@ int bake_command(const Arguments& arguments) {
   declare_out(options, request);
   if (const auto status = status_at_once(options, arguments)) return *status;
   if (const Status status = check(request); !status) return print_error(status.error());
+  name_outputs(request.character, request.settings);
 
   Diagnostics diagnostics;
   const auto baked = search_and_bake(request, diagnostics);

@@ -85,9 +85,10 @@ void declare(Options& options, BatchRequest& request) {
   options.whole("-j,--jobs", "N", settings.workers.workers, 1, kMostWorkers, "worker processes",
                 fmt::format("default: one for each processor, here {}", processors()));
   options.number("--job-timeout", "S", settings.workers.job_timeout_s, Range{0.1, 86400.0},
-                 "a reaction that takes longer is given up, after a second try");
-  options.number("--job-memory", "MB", request.memory_mb, Range{256.0, 1048576.0},
-                 "address space of a worker; one that needs more loses its reaction, after a second try");
+                 "most time for one reaction; one that takes longer is given up after a second try");
+  options.number(
+      "--job-memory", "MB", request.memory_mb, Range{256.0, 1048576.0},
+      "most memory of a worker process; a reaction that needs more is given up after a second try");
   options.group("out");
   options.on_off(
       "review", true, [&request](bool on) { request.review = on; },

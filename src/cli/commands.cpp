@@ -8,6 +8,7 @@
 #include "base/nearest.h"
 #include "base/version.h"
 #include "cli/console.h"
+#include "cli/help_pages.h"
 
 namespace ukemi {
 namespace {
@@ -34,7 +35,7 @@ constexpr std::array<Command, 12> kCommands = {{
      rom_command},
     {"calibrate", "FILE...", "thresholds of the active restriction from people who stand and walk",
      calibrate_command},
-    {"help", "TOPIC", "pages to read: blender", help_command},
+    {"help", "TOPIC", "a page to read, or a command's options", help_command},
 }};
 
 std::string overview() {
@@ -45,6 +46,11 @@ std::string overview() {
   for (const Command& command : kCommands)
     text +=
         fmt::format("  {:<18} {}\n", fmt::format("{} {}", command.name, command.arguments), command.summary);
+  text += "\npages, with ukemi help TOPIC:\n\n";
+  for (const std::string& topic : help_topics()) {
+    const auto page = help_page(topic);
+    text += fmt::format("  {:<18} {}\n", topic, page ? title_of(*page) : "");
+  }
   return text +
          "\nukemi COMMAND --help prints the options of a command; ukemi --version the version.\n\n"
          "exit status: 0 done; 1 done, but a check said no; 2 something must change (command line, input "
@@ -67,9 +73,13 @@ int run(const Arguments& arguments) {
   for (const Command& command : kCommands)
     if (command.name == word) return command.run(Arguments(arguments.begin() + 1, arguments.end()));
   if (word.starts_with('-')) return refuse(fmt::format("unknown option '{}'", word), "see ukemi --help");
+  return refuse(fmt::format("unknown command '{}'", word), suggestion(word, command_names()));
+}
+
+std::vector<std::string> command_names() {
   std::vector<std::string> names;
   for (const Command& command : kCommands) names.emplace_back(command.name);
-  return refuse(fmt::format("unknown command '{}'", word), suggestion(word, names));
+  return names;
 }
 
 }  // namespace ukemi

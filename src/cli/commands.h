@@ -21,6 +21,8 @@ int calibrate_command(const Arguments& arguments);
 int review_command(const Arguments& arguments);
 int help_command(const Arguments& arguments);
 
+std::vector<std::string> command_names();
+
 /// The whole command line without the program's name.
 int run(const Arguments& arguments);
 

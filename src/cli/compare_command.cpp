@@ -40,11 +40,12 @@ void declare(Options& options, CompareRequest& request) {
                    "a .glb .gltf .vrm .fbx .dae .bvh file, or the word mannequin");
   options.group("experiment");
   options.whole("--hits", "N", settings.hits, 1, kMostHits, "random hits for each method");
-  options.whole("--seed", "N", settings.seed, 0, UINT64_MAX, "of the hits");
+  options.whole("--seed", "N", settings.seed, 0, UINT64_MAX, "seed of the random hits");
   options.text("--region", "NAME|FILE", settings.region,
                "range of motion that the methods keep to: human diamond box, or a TOML file; all are judged "
                "against human");
-  options.number("--duration", "S", settings.duration_s, Range{0.1, 60.0}, "of each hit");
+  options.number("--duration", "S", settings.duration_s, Range{0.1, 60.0},
+                 "time that is simulated of each hit");
   options.group("body");
   declare_humanoid_options(options, settings.humanoid);
   options.group("out");

@@ -16,11 +16,13 @@ int diff_command(const Arguments& arguments) {
       "compares two clips joint by joint, by world position and by local rotation.\nExit status: 0 the same "
       "within the tolerances, 1 different");
   options.argument("A", a, "a file with a clip");
-  options.argument("B", b, "another");
+  options.argument("B", b, "another file with a clip");
   options.text("--clip", "NAME", settings.clip,
                "clip of both, by its name or #INDEX [default: the last of each]");
-  options.number("--tolerance-deg", "DEG", settings.tolerance_deg, Range{0.0, 360.0}, "of rotations");
-  options.number("--tolerance-mm", "MM", settings.tolerance_mm, Range{0.0, 1e6}, "of positions");
+  options.number("--tolerance-deg", "DEG", settings.tolerance_deg, Range{0.0, 360.0},
+                 "how far rotations may differ");
+  options.number("--tolerance-mm", "MM", settings.tolerance_mm, Range{0.0, 1e6},
+                 "how far positions may differ");
   options.flag("--json", json, "as JSON");
   if (const auto status = status_at_once(options, arguments)) return *status;
 

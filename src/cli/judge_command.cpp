@@ -36,20 +36,21 @@ void declare(Options& options, JudgeClipSettings& settings) {
   options.number("--impact", "S", judge.impact_s, Range{0.0, kLongest_s},
                  "time of the blow [default: as baked into the clip, else found]");
   options.number("--from", "S", judge.from_s, Range{0.0, kLongest_s}, "the blow is looked for from here");
-  options.number("--to", "S", judge.to_s, Range{0.0, kLongest_s}, "judged until here [default: the end]");
+  options.number("--to", "S", judge.to_s, Range{0.0, kLongest_s},
+                 "the clip is judged until here [default: the end]");
   options.custom(
       "--mode", "stand|fall|getup", [&judge](const std::string& word) { return take_kind(word, judge); },
-      "what happens [default: found]");
+      "what the clip shows [default: found]");
   options.group("the blow");
   options.number("--momentum", "N_S", judge.momentum_n_s, Range{0.0, 10000.0},
-                 "of the blow: some criteria apply to some strengths [default: unknown]");
+                 "momentum of the blow: some criteria apply to some strengths [default: unknown]");
   options.custom(
       "--hit", "SEGMENT", [&judge](const std::string& word) { return take_segment(word, judge); },
-      "where it landed [default: unknown]");
+      "segment that the blow hit [default: unknown]");
   options.flag("--ko", judge.knock_out, "a knock-out: nobody protects himself");
   options.group("the body");
   options.number("--mass", "KG", settings.mass_kg, Range{1.0, 1000.0},
-                 "[default: that of a man of the figure's height]");
+                 "mass of the body [default: that of a man of the figure's height]");
 }
 
 }  // namespace

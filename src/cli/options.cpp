@@ -52,7 +52,8 @@ class HelpLayout : public CLI::Formatter {
     std::string groups = make_groups(app, mode);
     for (auto gap = groups.find("\n\n\n"); gap != std::string::npos; gap = groups.find("\n\n\n", gap))
       groups.erase(gap, 1);
-    return text + " [options]\n" + make_positionals(app) + groups;
+    return text + " [options]\n" + make_positionals(app) + groups + app->get_footer() +
+           (app->get_footer().empty() ? "" : "\n");
   }
 
   std::string make_group(std::string title, bool positional,
@@ -76,9 +77,15 @@ std::string with_notes(const std::string& help, std::vector<std::string> notes) 
   return notes.empty() ? help : fmt::format("{} [{}]", help, fmt::join(notes, "; "));
 }
 
-std::string long_name(const std::string& names) {
-  const auto comma = names.rfind(',');
-  return comma == std::string::npos ? names : names.substr(comma + 1);
+/// "--pre-roll" and "--lead" of "--pre-roll,--lead".
+std::vector<std::string> long_names(const std::string& names) {
+  std::vector<std::string> found;
+  for (std::size_t begin = 0; begin < names.size();) {
+    const std::size_t end = std::min(names.find(',', begin), names.size());
+    if (names.compare(begin, 2, "--") == 0) found.push_back(names.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return found;
 }
 
 template <typename Target>
@@ -110,6 +117,9 @@ std::function<Status(const std::string&)> take_whole(Target& target, Number low,
 struct Options::Parser {
   CLI::App app;
   std::string group = "options";
+  bool everyday = true;
+  bool shows_all = false;
+  std::vector<CLI::Option*> rare;      // not for every day
   std::vector<std::string> names;      // every long option
   std::optional<Error> error;          // the first refusal of a value
   std::vector<std::string> arguments;  // names of the positional ones
@@ -117,7 +127,7 @@ struct Options::Parser {
   /// Declares an option whose values go, as text, to `take`.
   CLI::Option* declare(const std::string& flags, const std::string& value, const std::string& help, bool list,
                        std::function<Status(const std::string&)> take) {
-    const std::string name = long_name(flags);
+    const std::string name = long_names(flags).front();
     CLI::callback_t callback = [this, take = std::move(take), name, list](const CLI::results_t& values) {
       if (!list && values.size() > 1 && !error)
         error = usage_error(fmt::format("{} is given {} times", name, values.size()), "give it once");
@@ -132,13 +142,23 @@ struct Options::Parser {
     CLI::Option* option = app.add_option(flags, std::move(callback), help);
     option->type_name(value)->type_size(1)->expected(1)->group(group);
     option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    names.push_back(name);
+    keep(option, flags);
     return option;
   }
 
   void declare_flag(const std::string& flags, std::function<void()> take, const std::string& help) {
-    app.add_flag_callback(flags, std::move(take), help)->group(group);
-    names.push_back(long_name(flags));
+    keep(app.add_flag_callback(flags, std::move(take), help)->group(group), flags);
+  }
+
+  void keep(CLI::Option* option, const std::string& flags) {
+    if (!everyday) rare.push_back(option);
+    for (std::string& name : long_names(flags)) names.push_back(std::move(name));
+  }
+
+  void hide_rare() {
+    for (CLI::Option* option : rare) option->group("");
+    app.footer(
+        fmt::format("\nukemi {0} --help-all shows all options, {1} more.", app.get_name(), rare.size()));
   }
 
   Error unknown(const std::string& argument) const {
@@ -167,6 +187,13 @@ Options::Options(const std::string& command, const std::string& summary)
 Options::~Options() = default;
 
 void Options::group(const std::string& title) { parser_->group = title; }
+
+void Options::everyday(bool everyday) {
+  parser_->everyday = everyday;
+  if (everyday || parser_->app.get_help_all_ptr()) return;
+  parser_->app.set_help_all_flag("--help-all", "print every option")->group("");
+  parser_->names.push_back("--help-all");
+}
 
 void Options::argument(const std::string& name, std::string& target, const std::string& help) {
   parser_->arguments.push_back(name);
@@ -301,6 +328,9 @@ Result<Options::Outcome> Options::parse(const std::vector<std::string>& argument
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
     return Outcome::help;
+  } catch (const CLI::CallForAllHelp&) {
+    parser_->shows_all = true;
+    return Outcome::help;
   } catch (const CLI::RequiredError&) {
     if (parser_->error) return *parser_->error;
     const auto extras = app.remaining();
@@ -318,7 +348,10 @@ Result<Options::Outcome> Options::parse(const std::vector<std::string>& argument
   return Outcome::run;
 }
 
-std::string Options::help() const { return parser_->app.help(); }
+std::string Options::help() const {
+  if (!parser_->rare.empty() && !parser_->shows_all) parser_->hide_rare();
+  return parser_->app.help();
+}
 
 std::optional<int> status_at_once(Options& options, const std::vector<std::string>& arguments,
                                   const std::string& further) {

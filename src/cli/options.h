@@ -16,11 +16,12 @@
 namespace ukemi {
 
 /// Contract:
-/// 1. Names are "--word" or "-x,--word". Values are taken as text and turned into their type by the
-/// declaration, so
-///    that every refusal names the option, the value and what is legal.
+/// 1. Names are "--word", "-x,--word" or "--word,--old-word": refusals name the first --word. Values are
+///    taken as text and turned into their type by the declaration, so that every refusal names the option,
+///    the value and what is legal.
 /// 2. A default stands in the help as it stands in the target when the option is declared.
 /// 3. An option given twice is refused, unless it is declared as a list.
+/// 4. Where some options are not for every day, --help leaves them out and --help-all shows all.
 class Options {
  public:
   Options(const std::string& command, const std::string& summary);
@@ -30,6 +31,8 @@ class Options {
 
   /// Heading of the options declared next.
   void group(const std::string& title);
+  /// Whether --help shows the options declared next; true at first.
+  void everyday(bool everyday);
   void argument(const std::string& name, std::string& target, const std::string& help);
   /// Any number of them, none included.
   void arguments(const std::string& name, std::vector<std::string>& target, const std::string& help);
@@ -68,6 +71,7 @@ class Options {
   enum class Outcome { run, help };
   /// Takes the arguments after the command's name. Errors: usage.
   Result<Outcome> parse(const std::vector<std::string>& arguments);
+  /// What --help or --help-all prints, whichever was parsed.
   std::string help() const;
 
  private:

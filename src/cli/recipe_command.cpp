@@ -11,7 +11,7 @@ int recipe_command(const Arguments& arguments) {
                   "prints a commented recipe with every key and every setting, ready for ukemi batch");
   bool json = false;
   options.flag("--json", json,
-               "every setting as data instead: name, type, default, range, choices, unit, help");
+               "every setting as data instead: name, other names, type, default, range, choices, unit, help");
   if (const auto status = status_at_once(options, arguments)) return *status;
   if (json) {
     const auto settings = settings_json();

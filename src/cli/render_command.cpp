@@ -63,7 +63,7 @@ void declare_kinds(Options& options, RenderSettings& settings) {
   options.group("moving picture");
   options.number("--fps", "HZ", settings.fps, Range{1.0, 60.0}, "pictures a second");
   options.number("--speed", "X", settings.speed, Range{0.01, 10.0},
-                 "of the clip: 0.25 is four times as slow");
+                 "speed of the picture: 0.25 is four times as slow as the clip");
   options.number("--turntable", "S", settings.turn_s, Range{0.5, 60.0},
                  "the camera goes once round in so many seconds");
 }

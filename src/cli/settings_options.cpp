@@ -20,11 +20,19 @@ std::string help_of(const SettingOf<Target>& setting, const Target& target) {
   return notes.empty() ? setting.help : fmt::format("{} [{}]", setting.help, fmt::join(notes, "; "));
 }
 
+/// "--pre-roll,--lead"
+template <typename Target>
+std::string names_of(const SettingOf<Target>& setting) {
+  std::string names;
+  for (const std::string_view word : setting.also) names += fmt::format("--{},", word);
+  return names + fmt::format("--{}", setting.name);
+}
+
 template <typename Target>
 void declare(Options& options, const SettingOf<Target>& setting, Target& target) {
   using Kind = typename SettingOf<Target>::Kind;
   const auto take = [&setting, &target](const std::string& text) { return setting.set(target, text); };
-  const std::string option = fmt::format("--{}", setting.name);
+  const std::string option = names_of(setting);
   if (setting.kind != Kind::on_off)
     return options.custom(option, setting.value, take, help_of(setting, target), setting.kind == Kind::list,
                           setting.bare);
@@ -47,8 +55,10 @@ void declare_humanoid_options(Options& options, HumanoidOptions& target) {
 void declare_bake_options(Options& options, BakeSettings& target) {
   for (const Setting& setting : bake_settings()) {
     options.group(std::string(setting.group));
+    options.everyday(setting.everyday);
     declare(options, setting, target);
   }
+  options.everyday(true);
 }
 
 }  // namespace ukemi

@@ -62,7 +62,7 @@ Json range_json(const JointRange& range) {
   return json;
 }
 
-/// Nothing where it is no range (see JointRange) as this program writes it.
+/// Nothing where it is not a range (see JointRange) as this program writes it.
 std::optional<JointRange> range_from(const Json& json, JointRange range) try {
   constexpr std::size_t kMostCorners = 1000;
   const auto frame = quaternion_in(json.at("parent_from_joint")),

@@ -115,7 +115,7 @@ Status embed_images(Edit& edit, const Character& character, bool into_binary) {
     const std::string stated = image.value("mimeType", std::string());
     const std::string mime = stated.empty() ? std::string(image_mime(*bytes)) : stated;
     if (mime.empty())
-      return document_error(character, "image '" + uri.substr(0, 80) + "' is no PNG, JPEG, WebP or KTX2",
+      return document_error(character, "image '" + uri.substr(0, 80) + "' is not a PNG, JPEG, WebP or KTX2",
                             "convert the image to PNG");
     if (into_binary) {
       image.erase("uri");

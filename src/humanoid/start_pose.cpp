@@ -251,7 +251,7 @@ Pose stand_on_floor(const Character& character, const Humanoid& humanoid, const 
 
 namespace {
 
-/// The rest pose, unless it is no pose or does not stand upright: then the reference pose.
+/// The rest pose, unless it is not a pose or does not stand upright: then the reference pose.
 Pose rest_on_feet(const Character& character, const Humanoid& humanoid) {
   const Pose rest = rest_pose(character.skeleton);
   const Landmarks figure(character, humanoid, rest);

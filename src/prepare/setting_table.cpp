@@ -15,6 +15,7 @@
 #include "base/segments.h"
 #include "bones/map_file.h"
 #include "prepare/impact.h"
+#include "prepare/setting_words.h"
 #include "prepare/settings.h"
 
 namespace ukemi {
@@ -168,8 +169,9 @@ HumanoidSetting map_setting() {
   setting.name = "map";
   setting.value = "SEGMENT=NODE|FILE";
   setting.help =
-      "node that moves a segment, by its name or #INDEX, where the program finds another or none; a .toml or "
-      ".json file may name many, like the one that inspect --json prints";
+      "which bone moves which segment, by the bone's name or #INDEX, where the program finds the wrong one "
+      "or none; "
+      "a .toml or .json file may name many, like the one that inspect --json prints";
   setting.set = take_map;
   setting.get = [](const HumanoidOptions& target) {
     std::vector<std::string> entries;
@@ -183,7 +185,8 @@ HumanoidSetting root_setting() {
   HumanoidSetting setting;
   setting.name = "root";
   setting.value = "NODE";
-  setting.help = "of several figures in a file the one at or below this node, by its name or #INDEX";
+  setting.help =
+      "where a file holds several figures: the node at or above the one to use, by its name or #INDEX";
   setting.unset = "the first";
   setting.set = [](HumanoidOptions& target, const std::string& text) -> Status {
     if (text.empty()) return usage_error("no node is named", "give a node's name, or its #INDEX in the file");
@@ -209,7 +212,7 @@ HumanoidSetting unit_setting() {
         std::find_if(kUnits.begin(), kUnits.end(), [&](const auto& entry) { return text == entry.first; });
     const auto metres = unit == kUnits.end() ? number_in(text) : std::optional(unit->second);
     if (!metres || !Range{0.0, 1e6, true}.contains(*metres))
-      return usage_error(fmt::format("'{}' is no unit", text),
+      return usage_error(fmt::format("'{}' is not a unit", text),
                          "give m, dm, cm, mm, in, ft, or metres per unit");
     target.metres_per_unit = *metres;
     return Done{};
@@ -266,8 +269,8 @@ Settings hit_settings() {
   return {
       parsed<S>(
           "hit", "SEGMENT",
-          "what is hit: pelvis abdomen chest head clavicle_l upperarm_l forearm_l hand_l thigh_l shank_l "
-          "foot_l, or _r",
+          "what is hit: head torso waist hips shoulder_l upper_arm_l lower_arm_l hand_l upper_leg_l calf_l "
+          "foot_l, or _r; the paper's names (chest, abdomen, pelvis, thigh_l, shank_l) do as well",
           [](auto& s) -> auto& { return s.hit; }, parse_segment),
       parsed<S>(
           "from", "DIR",
@@ -275,28 +278,32 @@ Settings hit_settings() {
           "from the front, 90 = from the character's left [-360 to 360, -90 to 90]",
           [](auto& s) -> auto& { return s.from; }, parse_direction),
       text<S>(
-          "preset", "NAME", "punch kick medicine-ball football tackle shot trip slip pull explosion",
+          "preset", "NAME",
+          "what hits, with the momentum of the real thing: punch kick medicine-ball football tackle shot "
+          "trip "
+          "slip pull explosion",
           [](auto& s) -> auto& { return s.preset; }, check_preset),
       with_unset(number<S>(
                      "ball-mass", "KG", Range{0.001, 10000.0}, "mass of the ball or box",
                      [](auto& s) -> auto& { return s.ball_mass_kg; }),
                  "the preset's"),
       with_unset(number<S>(
-                     "ball-speed", "M_S", Range{0.01, 1000.0}, "its speed at contact",
+                     "ball-speed", "M_S", Range{0.01, 1000.0}, "speed of the ball or box at contact",
                      [](auto& s) -> auto& { return s.ball_speed_m_s; }),
                  "the preset's"),
       with_unset(number<S>(
-                     "ball-radius", "M", Range{0.005, 5.0}, "its radius, or half edge",
+                     "ball-radius", "M", Range{0.005, 5.0}, "radius of the ball, or half the edge of the box",
                      [](auto& s) -> auto& { return s.ball_radius_m; }),
                  "the preset's"),
       number<S>(
-          "strength", "TIMES", Range{0.01, 100.0}, "of the blow: times the preset's momentum",
+          "strength", "TIMES", Range{0.01, 100.0}, "strength of the blow: times the preset's momentum",
           [](auto& s) -> auto& { return s.strength; }),
       number<S>(
-          "aim-up", "M", Range{-5.0, 5.0}, "ball, box: meets the segment so far above its centre",
+          "aim-up", "M", Range{-5.0, 5.0}, "ball and box: how far above its centre the segment is hit",
           [](auto& s) -> auto& { return s.aim_up_m; }),
       number<S>(
-          "aim-left", "M", Range{-5.0, 5.0}, "ball, box: so far to the left, seen from where it comes from",
+          "aim-left", "M", Range{-5.0, 5.0},
+          "ball and box: how far left of its centre the segment is hit, seen from where the blow comes",
           [](auto& s) -> auto& { return s.aim_left_m; }),
       with_unset(
           parsed<S>(
@@ -309,13 +316,14 @@ Settings hit_settings() {
               [](auto& s) -> auto& { return s.scene; }, parse_scene),
           "the preset's"),
       number<S>(
-          "slope-deg", "DEG", Range{1.0, 60.0}, "slope: of the ramp",
+          "slope-deg", "DEG", Range{1.0, 60.0}, "slope of the ramp (--scene slope)",
           [](auto& s) -> auto& { return s.slope_deg; }),
       number<S>(
-          "fall-height", "M", Range{0.0, 50.0}, "fall: above the floor",
+          "fall-height", "M", Range{0.0, 50.0}, "height from which the body is dropped (--scene fall)",
           [](auto& s) -> auto& { return s.fall_height_m; }),
       number<S>(
-          "tip-speed", "M_S", Range{0.0, 20.0}, "fall: of the centre of mass, away from --from",
+          "tip-speed", "M_S", Range{0.0, 20.0},
+          "speed at which the body is tipped over, away from --from (--scene fall)",
           [](auto& s) -> auto& { return s.tip_speed_m_s; }),
   };
 }
@@ -328,7 +336,7 @@ Settings body_settings() {
                      [](auto& s) -> auto& { return s.mass_kg; }),
                  "73 kg (height / 1.741 m)^3, female 61.9 kg (height / 1.735 m)^3"),
       choice<S, Sex>(
-          "sex", {{"male", Sex::male}, {"female", Sex::female}}, "table of the segments' masses",
+          "sex", {{"male", Sex::male}, {"female", Sex::female}}, "whose segment masses the body has",
           [](auto& s) -> auto& { return s.sex; }),
   };
   for (const HumanoidSetting& setting : humanoid_settings()) settings.push_back(lifted(setting));
@@ -351,7 +359,7 @@ Settings start_settings() {
           "first, unless named after '#'), whose segments then lead the character's",
           [](auto& s) -> auto& { return s.clip; }),
       with_unset(number<S>(
-                     "at", "S", Range{0.0, 86400.0}, "time in that clip at the first contact",
+                     "at", "S", Range{0.0, 86400.0}, "time in the start clip at which the blow lands",
                      [](auto& s) -> auto& { return s.at_s; }),
                  "0"),
   };
@@ -400,7 +408,7 @@ Settings behaviour_settings_table() {
                      "behaviour",
                      {{"alert", Behaviour::alert}, {"dazed", Behaviour::dazed}, {"limp", Behaviour::limp}},
                      "alert: balances, steps, protects itself; dazed: late and weak, at most one step; limp: "
-                     "a body that nobody is in, which --tone stiffens at first",
+                     "a body that nobody is in, which --stiffness stiffens at first",
                      [](auto& s) -> auto& { return s.behaviour; }),
                  "alert, or limp with --rate fixed"),
       number<S>(
@@ -444,7 +452,7 @@ Settings behaviour_settings_table() {
           [](auto& s) -> auto& { return s.breathes; }, "lies still, and the clip ends with --hold"),
       bare(with_unset(number<S>(
                           "get-up", "S", Range{0.0, 60.0},
-                          "gets up from the floor into the start pose, after lying still so long",
+                          "get up from the floor into the start pose, after lying still for this time",
                           [](auto& s) -> auto& { return s.get_up_s; }),
                       "stays down"),
            "0.8"),
@@ -454,7 +462,7 @@ Settings behaviour_settings_table() {
            {"quick", GetUpStyle::quick},
            {"heavy", GetUpStyle::heavy},
            {"hurt", GetUpStyle::hurt}},
-          "how", [](auto& s) -> auto& { return s.get_up_style; }),
+          "manner of getting up", [](auto& s) -> auto& { return s.get_up_style; }),
       number<S>(
           "seed", "N", Range{0.0, 4294967295.0},
           "another take of the same blow: stance, latency, arms and steps vary as people do; 0: the mean of "
@@ -500,22 +508,22 @@ Settings method_settings() {
           "active restriction: joints resist fast rotation, like a person who tenses up",
           [](auto& s) -> auto& { return s.simulation.active; }),
       number<S>(
-          "active-k", "1_S", Range{0.0, 2000.0, true}, "its strength k",
+          "active-k", "1_S", Range{0.0, 2000.0, true}, "strength k of the active restriction",
           [](auto& s) -> auto& { return s.simulation.active_k; }),
       with_unset(text<S>(
-                     "active-file", "FILE", "its thresholds, as calibrate writes them",
+                     "active-file", "FILE", "thresholds of the active restriction, as calibrate writes them",
                      [](auto& s) -> auto& { return s.active_file; }),
                  "the program's own"),
       number<S>(
-          "active-delay", "S", Range{0.0, 10.0}, "time before it sets in",
+          "active-delay", "S", Range{0.0, 10.0}, "time after the blow before the active restriction sets in",
           [](auto& s) -> auto& { return s.simulation.active_delay_s; }),
       with_unset(number<S>(
                      "tone", "0..1", Range{0.0, 1.0},
-                     "share of a man's joint torques that hold the start pose at first",
+                     "stiffness at first: share of a person's joint torques that hold the start pose",
                      [](auto& s) -> auto& { return s.simulation.tone; }),
                  "0.3, or 0 with --rate fixed"),
       number<S>(
-          "tone-fade", "S", Range{0.0, 10.0, true}, "time in which it goes",
+          "tone-fade", "S", Range{0.0, 10.0, true}, "time in which that stiffness fades",
           [](auto& s) -> auto& { return s.simulation.tone_fade_s; }),
       with_unset(number<S>(
                      "damping", "1_S", Range{0.0, 100.0}, "joint damping",
@@ -529,14 +537,15 @@ Settings clip_settings() {
   using S = BakeSettings;
   return {
       with_unset(number<S>(
-                     "duration", "S", Range{0.0, 60.0, true}, "length at most, until he gets up",
+                     "duration", "S", Range{0.0, 60.0, true}, "longest time that is simulated after the blow",
                      [](auto& s) -> auto& { return s.simulation.duration_s; }),
                  "4, limp 3, with --get-up 12"),
       on_off<S>(
           "until-rest", "end the clip once everything rests", [](auto& s) -> auto& { return s.until_rest; },
           "keep the still tail, up to --duration"),
       number<S>(
-          "hold", "S", Range{0.0, 60.0}, "kept after that", [](auto& s) -> auto& { return s.hold_s; }),
+          "hold", "S", Range{0.0, 60.0}, "time that the clip goes on once everything rests",
+          [](auto& s) -> auto& { return s.hold_s; }),
       number<S>(
           "fps", "N", Range{1.0, 1000.0}, "frames per second",
           [](auto& s) -> auto& { return s.simulation.fps; }),
@@ -552,7 +561,8 @@ Settings clip_settings() {
                  "none"),
       choice<S, RecoverTo>(
           "to", {{"rest", RecoverTo::rest}, {"clip", RecoverTo::clip}},
-          "recover: to the start pose, or to what the start clip, a cycle round and round, plays by then",
+          "where --return leads: the start pose, or what the start clip plays by then (a cycle goes round "
+          "and round)",
           [](auto& s) -> auto& { return s.recover_to; }),
       choice<S, RootMotion>(
           "root-motion",
@@ -611,7 +621,11 @@ Settings out_settings() {
 }
 
 void append(Settings& settings, std::string_view group, Settings more) {
-  for (Setting& setting : more) setting.group = group;
+  for (Setting& setting : more) {
+    setting.group = group;
+    setting.also = other_words(setting.name);
+    setting.everyday = is_everyday(setting.name);
+  }
   std::move(more.begin(), more.end(), std::back_inserter(settings));
 }
 
@@ -643,8 +657,9 @@ const std::vector<Setting>& bake_settings() {
 Result<const Setting*> find_setting(std::string_view name) {
   std::vector<std::string> names;
   for (const Setting& setting : bake_settings()) {
-    if (setting.name == name) return &setting;
     names.emplace_back(setting.name);
+    names.insert(names.end(), setting.also.begin(), setting.also.end());
+    if (std::find(names.rbegin(), names.rend(), name) != names.rend()) return &setting;
   }
   return usage_error(fmt::format("unknown setting '{}'", name), suggestion(name, names));
 }

@@ -128,7 +128,7 @@ bool moves(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& 
   return false;
 }
 
-/// See Start::round. A motion that comes to rest where it began (a blow out of a guard) is no round.
+/// See Start::round. A motion that comes to rest where it began (a blow out of a guard) is not a round.
 std::optional<Rigid> round_of(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& motion) {
   if (motion.duration_s() < kShortestRound) return std::nullopt;
   const double step_s = 2.0 * kVelocityStep;

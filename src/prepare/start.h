@@ -12,7 +12,7 @@ struct BakeSettings;
 
 /// The start that the settings ask for. Pose and clip may be of another file: see motion.h. Errors: usage
 /// (--pose and --clip together, --at without a clip or outside it, unknown pose or clip), input (another file
-/// that cannot be read, is no humanoid or holds no clip).
+/// that cannot be read, is not a humanoid or holds no clip).
 Result<Start> start_of(const Character& character, const Humanoid& humanoid, const BakeSettings& settings,
                        Diagnostics& diagnostics);
 

@@ -154,7 +154,7 @@ Status write_clip(const ReviewSource& source, PageFolder& page, Made& made) {
   return Done{};
 }
 
-/// Loads and writes one reaction; a clip that cannot be read is no error of the page. Errors: output.
+/// Loads and writes one reaction; a clip that cannot be read is not an error of the page. Errors: output.
 Status make_one(const fs::path& folder, const ReviewSource& source, PageFolder& page, Made& made) {
   if (source.clip.empty() || source.status == "failed") return Done{};
   auto clip = review_clip(folder, source, made.diagnostics);

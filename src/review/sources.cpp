@@ -27,7 +27,7 @@ Result<Json> read_json(const fs::path& path) {
   const auto bytes = read_file(path, kMaxJsonBytes);
   if (!bytes) return bytes.error();
   Json json = Json::parse(*bytes, nullptr, false);
-  if (!json.is_object()) return input_error(path, "is no JSON object", "make the file again");
+  if (!json.is_object()) return input_error(path, "is not a JSON object", "make the file again");
   return json;
 }
 

@@ -12,7 +12,7 @@ namespace ukemi {
 inline constexpr double kMaxFrames = 100000.0;
 
 /// What no simulation can be run with: numbers that are not finite or out of their range, a body without
-/// mass, a start that is no pose. Errors: usage (settings, scene), input (body, start, range).
+/// mass, a start that is not a pose. Errors: usage (settings, scene), input (body, start, range).
 std::optional<Error> fault_of(const SimulationInput& input);
 
 }  // namespace ukemi

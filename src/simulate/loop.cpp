@@ -18,9 +18,9 @@
 namespace ukemi {
 namespace {
 
-constexpr double kTornApart = 0.115;  // of the height: a joint whose halves are so far apart is none any more
+constexpr double kTornApart = 0.115;    // of the height: a joint whose halves are farther apart is torn
 constexpr double kEarthGravity = 9.81;  // m/s^2
-constexpr double kEnergyGain = 0.8;     // of mass g height: more energy from nowhere is an explosion
+constexpr double kEnergyGain = 0.8;     // of mass g height: more energy without a cause is an explosion
 constexpr double kBlowShare = 0.01;     // and of the energy of what hits, which no solver keeps exactly
 
 /// One run: steps are tried, taken back and halved where they are bad, and count once accepted.
@@ -45,7 +45,7 @@ class Simulation {
   SimulationResult result();
   const std::vector<double>& excesses() const { return recorder_.excesses(); }
   double time_s() const { return stepping_.tick_s * static_cast<double>(ticks_); }
-  /// When and where a joint first came apart or energy came from nowhere; a run goes on all the same.
+  /// When and where a joint first came apart or energy came from nowhere; the run goes on.
   const std::optional<Diverged>& torn() const { return torn_; }
 
  private:

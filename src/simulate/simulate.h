@@ -27,7 +27,7 @@ struct SimulationSettings {
   std::optional<double> tone;
   double tone_fade_s = 0.6;          // until it has gone
   std::optional<double> damping;     // joint damping, 1/s; default 10 with adaptive steps, 0 with fixed ones
-  double fixed_hz = 0.0;             // 0: adaptive steps; else the frozen yardstick at that rate
+  double fixed_hz = 0.0;             // 0: adaptive steps; else fixed steps at that rate, the reference
   std::optional<double> duration_s;  // of the simulated part; default 3
   double fps = 60.0;                 // of the trajectory
   bool stop_at_rest = true;          // hold the pose once everything rests

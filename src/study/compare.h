@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "prepare/impact.h"
-#include "prepare/prepared.h"
 #include "base/character.h"
 #include "base/result.h"
+#include "prepare/impact.h"
+#include "prepare/prepared.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {
@@ -84,8 +84,8 @@ struct PairedChange {
 PairedChange paired_change(const MethodFigures& method, const MethodFigures& other,
                            std::vector<double> MethodFigures::*by_hit);
 
-/// Whether a run is no motion of a body any more: it diverged, gained more than 1000 J (a standing body has
-/// about 720 J to lose), or a joint came apart by more than 0.2 m.
+/// Whether a run stopped being plausible: it diverged, gained more than 1000 J (a standing body has about
+/// 720 J to lose), or a joint came apart by more than 0.2 m.
 bool exploded(const Trial& trial);
 
 struct Comparison {

@@ -26,7 +26,7 @@ TEST(MapFile, RefusesWhatItDoesNotUnderstandWithThePlace) {
   EXPECT_EQ(parse_map("[map]\n\nhead = 12\n", "a.toml").error().line, 3);
   EXPECT_EQ(parse_map("head = \n", "a.toml").error().line, 1);
   EXPECT_EQ(parse_map(R"({"haed": "Skull"})", "a.json").error().fix, "did you mean 'head'?");
-  EXPECT_EQ(parse_map(R"({"head": 12})", "a.json").error().what, "the node of 'head' is no text");
+  EXPECT_EQ(parse_map(R"({"head": 12})", "a.json").error().what, "the node of 'head' is not a text");
   EXPECT_EQ(parse_map(R"({"head": )", "a.json").error().fix, "correct the JSON syntax");
   EXPECT_EQ(parse_map(R"({"map": {}})", "a.json").error().what, "names no segment");
   EXPECT_EQ(parse_map("", "a.toml").error().what, "names no segment");

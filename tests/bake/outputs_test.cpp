@@ -40,6 +40,28 @@ TEST_F(Outputs, AreKnownByTheirExtension) {
   EXPECT_FALSE(output_format("glb"));
 }
 
+TEST_F(Outputs, InAFolderAreNamedByCharacterHitAndPreset) {
+  fs::create_directory(folder / "out");
+  BakeSettings settings;
+  settings.hit = Segment::head;
+  settings.preset = "punch";
+  settings.outputs = {folder / "out", folder / "own.bvh", folder / "later/"};
+  settings.sheet = folder / "out";
+  settings.report = folder / "report.json";
+  name_outputs("models/hero one.vrm", settings);
+  EXPECT_EQ(settings.outputs,
+            (std::vector<fs::path>{folder / "out/hero_one_head_front_punch.glb", folder / "own.bvh",
+                                   folder / "later/hero_one_head_front_punch.glb"}));
+  EXPECT_EQ(settings.sheet, folder / "out/hero_one_head_front_punch.png");
+  EXPECT_EQ(settings.report, folder / "report.json");
+
+  settings.outputs = {folder / "out"};
+  settings.scene = SceneKind::slope;
+  settings.seed = 3;
+  name_outputs("walk.bvh", settings);
+  EXPECT_EQ(settings.outputs.front(), folder / "out/walk_head_front_slope_seed3.bvh");
+}
+
 TEST_F(Outputs, OfUnknownFormatAreRefused) {
   EXPECT_EQ(refused({folder / "a.obj"}).kind, ErrorKind::usage);
   BakeSettings settings;

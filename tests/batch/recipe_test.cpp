@@ -295,6 +295,20 @@ TEST_F(RecipeFolder, FilesThatSettingsNameAreThoseBesideTheRecipe) {
   EXPECT_EQ(all->at(0).settings.region, "diamond");
 }
 
+TEST(Recipe, TakesTheWordsOfArtistsButNotTwoForOneSetting) {
+  const auto all =
+      reactions(kHead + "[settings]\npre-roll = 0.5\n[[matrix]]\nname = \"a{blend-out}\"\nreturn = [1, 2]\n");
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].settings.lead_s, 0.5);
+  EXPECT_EQ(all[1].settings.recover_s, 2.0);
+  EXPECT_EQ(all[1].name, "a2");
+  EXPECT_EQ(all[1].written.at("recover"), "2");
+  expect_refused(kHead + "[settings]\nlead = 1\npre-roll = 2\n[[reaction]]\n", 5, 1, "another name",
+                 "write pre-roll once");
+  expect_refused(kHead + "[[matrix]]\nlead = [1, 2]\npre-roll = 2\n", 5, 1, "another name",
+                 "write pre-roll once");
+}
+
 /// The reference with its lines of one # put to work.
 std::string uncommented(const std::string& reference) {
   std::istringstream lines(reference);
@@ -319,7 +333,7 @@ TEST(RecipeReference, IsOneToWhenItsCommentsAreTakenAway) {
 TEST(RecipeReference, NamesEverySettingWithItsDefault) {
   const std::string text = recipe_reference();
   for (const Setting& setting : bake_settings())
-    EXPECT_NE(text.find(std::string(setting.name) + " = "), std::string::npos) << setting.name;
+    EXPECT_NE(text.find(std::string(setting.shown()) + " = "), std::string::npos) << setting.name;
   EXPECT_NE(text.find("\n# fps = 60\n"), std::string::npos);
   EXPECT_NE(text.find("\n# keys = \"reduced\"\n"), std::string::npos);
   EXPECT_NE(text.find("\n# until-rest = true\n"), std::string::npos);

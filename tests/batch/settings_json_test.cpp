@@ -37,6 +37,7 @@ TEST(SettingsAsData, AreAllOfThemWithUnitsRangesAndChoices) {
     EXPECT_EQ(told["type"] == "number", number);
     EXPECT_TRUE(told["type"] != "choice" || told["choices"].size() >= 2);
     EXPECT_FALSE(told["help"].get<std::string>().empty());
+    EXPECT_EQ(told["also"].size(), setting.also.size());
   }
 }
 

@@ -394,7 +394,7 @@ TEST_F(Batch, RefusesBeforeAnythingIsMade) {
   expect_refused({"batch", "r.toml", "-o", "out", "--shard", "3/2"}, 2, "--shard: '3/2' is not I/N");
   expect_refused({"batch", "r.toml", "-o", "out", "--resume", "--force"}, 2, "exclude each other");
   expect_refused({"batch", "r.toml", "-o", "out", "--merge", "none"}, 2, "there is no such folder");
-  expect_refused({"batch", "r.toml", "-o", "out", "--rejects", "r.toml"}, 2, "no list of verdicts");
+  expect_refused({"batch", "r.toml", "-o", "out", "--rejects", "r.toml"}, 2, "not a list of verdicts");
   write("r.toml", "format = 1\ncharacters = [\"mannequin\"]\n[[matrix]]\nhti = [\"head\"]\n");
   expect_refused({"batch", "r.toml", "-o", "out"}, 2, "r.toml:4:1: unknown setting 'hti'");
 }

@@ -15,6 +15,7 @@ struct Example {
   std::vector<std::filesystem::path> outputs;
   bool json = false;
   bool until_rest = true;
+  double lead_s = 1.0;
   Options options{"example", "does nothing"};
 
   Example() {
@@ -27,6 +28,8 @@ struct Example {
     options.flag("--json", json, "as JSON");
     options.on_off(
         "until-rest", true, [this](bool on) { until_rest = on; }, "end at rest", "go on");
+    options.everyday(false);
+    options.number("--pre-roll,--lead", "S", lead_s, kRange, "time before the blow");
   }
 };
 
@@ -82,6 +85,29 @@ TEST(Options, HelpTellsDefaultsAndLegalRanges) {
   EXPECT_NE(help.find("usage: ukemi example FILE [options]"), std::string::npos) << help;
   EXPECT_NE(help.find("frames per second [default 60; 1 to 1000]"), std::string::npos) << help;
   EXPECT_NE(help.find("[may be repeated]"), std::string::npos) << help;
+}
+
+TEST(Options, HaveOtherNamesAndRefusalsNameTheFirst) {
+  for (const char* name : {"--pre-roll", "--lead"}) {
+    Example example;
+    ASSERT_TRUE(example.options.parse({"in.glb", name, "2"}));
+    EXPECT_DOUBLE_EQ(example.lead_s, 2.0);
+  }
+  EXPECT_EQ(refused({"in.glb", "--lead", "0"}).what, "--pre-roll: 0 is out of range");
+  EXPECT_EQ(refused({"in.glb", "--lead", "2", "--pre-roll", "3"}).what, "--pre-roll is given 2 times");
+  EXPECT_EQ(refused({"in.glb", "--pre-rol", "2"}).fix, "did you mean '--pre-roll'?");
+}
+
+TEST(Options, ThatFewNeedAreInHelpAllAlone) {
+  for (const std::string word : {"--help", "--help-all"}) {
+    Example example;
+    ASSERT_TRUE(example.options.parse({word}));
+    const std::string help = example.options.help();
+    const bool all = word == "--help-all";
+    EXPECT_EQ(help.find("--pre-roll") != std::string::npos, all) << help;
+    EXPECT_EQ(help.find("--help-all shows all options, 1 more") != std::string::npos, !all) << help;
+    EXPECT_NE(help.find("--fps"), std::string::npos) << help;
+  }
 }
 
 }  // namespace

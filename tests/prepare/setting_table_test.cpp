@@ -63,6 +63,7 @@ TEST(Settings, EachHasOneNameAndTheGroupsAreContiguous) {
   std::string_view group;
   for (const Setting& setting : bake_settings()) {
     EXPECT_TRUE(names.insert(setting.name).second) << setting.name;
+    for (const std::string_view word : setting.also) EXPECT_TRUE(names.insert(word).second) << word;
     EXPECT_FALSE(setting.help.empty()) << setting.name;
     if (setting.group == group) continue;
     EXPECT_TRUE(closed.insert(setting.group).second) << setting.group;
@@ -76,6 +77,14 @@ TEST(Settings, RefuseWhatIsNotLegalAndTellWhatIs) {
   EXPECT_EQ((*find_setting("keys"))->set(settings, "al").error().fix, "did you mean 'all'?");
   EXPECT_EQ((*find_setting("hit"))->set(settings, "haed").error().fix, "did you mean 'head'?");
   EXPECT_EQ(find_setting("fsp").error().fix, "did you mean 'fps'?");
+}
+
+TEST(Settings, GoByTheWordsOfArtistsAsWell) {
+  EXPECT_EQ(*find_setting("pre-roll"), *find_setting("lead"));
+  EXPECT_EQ(*find_setting("muscle-strength"), *find_setting("muscle"));
+  EXPECT_EQ((*find_setting("recover"))->shown(), "return");
+  EXPECT_EQ((*find_setting("fps"))->shown(), "fps");
+  EXPECT_EQ(find_setting("pre-rol").error().fix, "did you mean 'pre-roll'?");
 }
 
 TEST(Settings, AValueThatALibraryUserPutsThereIsCheckedToo) {

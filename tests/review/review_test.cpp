@@ -216,7 +216,7 @@ TEST_F(Reviewed, APageThatWasCutShortIsMadeAnew) {
 
 TEST_F(Reviewed, RefusesWhatIsNoBatch) {
   write("manifest.json", "[]");
-  EXPECT_NE(refusal().find("is no JSON object"), std::string::npos);
+  EXPECT_NE(refusal().find("is not a JSON object"), std::string::npos);
   write("manifest.json", R"({"format": 2, "reactions": []})");
   EXPECT_NE(refusal().find("is not the manifest of a batch"), std::string::npos);
   write("manifest.json", R"({"format": 1, "reactions": [{}]})");

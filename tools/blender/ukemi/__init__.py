@@ -9,7 +9,7 @@ bl_info = {
     "name": "Ukemi",
     "description": "Bakes hit reactions whose joints stay human",
     "author": "The ukemi project",
-    "version": (0, 1, 0),
+    "version": (0, 2, 0),
     "blender": (3, 4, 0),
     "location": "3D View > Sidebar > Ukemi",
     "category": "Animation",

@@ -19,7 +19,8 @@ def attribute(name):
 
 
 def _label(setting):
-    words = setting["name"].replace("-", " ").capitalize()
+    shown = setting.get("also") or [setting["name"]]  # what artists call it, where that is another word
+    words = shown[0].replace("-", " ").capitalize()
     return f"{words} ({setting['unit']})" if setting.get("unit") not in (None, "1") else words
 
 
