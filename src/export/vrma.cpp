@@ -13,12 +13,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct VrmBone {
+struct HumanBone {
   Segment segment;
   const char* name;
 };
 
-constexpr VrmBone kBones[] = {{Segment::pelvis, "hips"},
+constexpr HumanBone kBones[] = {{Segment::pelvis, "hips"},
                               {Segment::abdomen, "spine"},
                               {Segment::chest, "chest"},
                               {Segment::head, "head"},
@@ -82,7 +82,7 @@ Quat bone_rotation(const BodyPose& pose, Segment s) {
 
 Json nodes_json(const BodyPose& pose) {
   Json nodes = Json::array();
-  for (const VrmBone& bone : kBones) {
+  for (const HumanBone& bone : kBones) {
     const Vec3 at = offset_of(pose, bone.segment);
     nodes.push_back({{"name", bone.name}, {"translation", {at.x(), at.y(), at.z()}}});
   }

@@ -35,6 +35,7 @@ ReactionRecord record_of(const std::string& file) {
   record.name = "head_left";
   record.digest = digest_of(std::string_view("inputs"));
   record.figures = ReactionFigures{};
+  record.library = "{}";
   record.files = {{file, 3, digest_of(std::string_view("old"))}};
   return record;
 }

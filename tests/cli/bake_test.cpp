@@ -110,6 +110,7 @@ TEST_F(Bake, TwiceGivesTheSameBytes) {
   for (Json* report : {&a, &b}) {
     report->erase("timings_s");
     (*report)["clip"].erase("outputs");
+    (*report)["library"].erase("File");
   }
   EXPECT_EQ(a, b);
 }

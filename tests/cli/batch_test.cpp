@@ -126,7 +126,8 @@ TEST_F(Batch, BytesAreTheSameForEveryNumberOfWorkersAndEveryShardSplit) {
   EXPECT_EQ(batch("split", {"--merge", "split"}).status, 0);
   for (const char* part : {"1-of-3", "2-of-3", "3-of-3"})
     for (const char* kind : {".json", ".csv"})
-      EXPECT_TRUE(fs::remove(folder / "split" / (std::string("manifest.") + part + kind)));
+      for (const char* table : {"manifest.", "library."})
+        EXPECT_TRUE(fs::remove(folder / "split" / (std::string(table) + part + kind)));
   expect_same("one", "split");
   EXPECT_EQ(batch("apart1", {"--shard", "1/2"}).status, 0);
   EXPECT_EQ(batch("apart2", {"--shard", "2/2"}).status, 0);
