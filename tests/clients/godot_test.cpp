@@ -53,7 +53,7 @@ TEST(Godot, ImportsEventsAndTheRowOfTheLibrary) {
   const std::string out = run_command(fmt::format("HOME='{0}' timeout 120 {1} --path '{0}' -s check.gd",
                                                   project.string(), program))
                               .first;
-  EXPECT_NE(out.find("row m_chest_front stood standing\n"), std::string::npos) << out;
+  EXPECT_NE(out.find("row m_chest_front stepped standing\n"), std::string::npos) << out;
   EXPECT_NE(out.find("event 0.250 ukemi_event impact\n"), std::string::npos) << out;
   EXPECT_NE(out.find("loop "), std::string::npos) << out;
   fs::remove_all(project);
