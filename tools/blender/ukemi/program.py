@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 
-VERSIONS = (0, 1)  # major and minor that this add-on speaks with
+VERSIONS = (0, 2)  # major and minor that this add-on speaks with
 
 
 class ProgramError(Exception):
