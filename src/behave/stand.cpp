@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body/centre_of_mass.h"
 #include "body/on_ground.h"
 
 namespace ukemi {
@@ -74,9 +75,7 @@ Standing::Standing(const ArticulatedBody& body, const BodyPose& home, double gra
       home_(home) {
   const double heading = yaw_of(home[0].rotation * Vec3::UnitX());
   flinch_ = Flinch(settings.flinch, heading);
-  Vec3 com = Vec3::Zero();
-  for (int i = 0; i < kSegmentCount; ++i)
-    com += body.segments[i].mass_kg / body.mass_kg * (home[i] * body.segments[i].centre_of_mass);
+  const Vec3 com = centre_of_mass(body, home);
   Vec2 middle = Vec2::Zero();
   for (const BodySide side : kSides) {
     const Vec2 sole = on_ground(home[ukemi::index(leg(side).foot)] * leg(side).sole_middle);

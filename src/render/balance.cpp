@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "body/centre_of_mass.h"
 #include "body/on_ground.h"
 #include "body/sole.h"
 
@@ -53,13 +54,6 @@ void add_ring(Geometry& geometry, const Vec2& centre, double inner, double outer
     add_flat_triangle(geometry, {a, b, c}, color);
     add_flat_triangle(geometry, {a, c, d}, color);
   }
-}
-
-Vec3 centre_of_mass(const ArticulatedBody& body, const BodyPose& pose) {
-  Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < kSegmentCount; ++i)
-    sum += body.segments[i].mass_kg / body.mass_kg * (pose[i] * body.segments[i].centre_of_mass);
-  return sum;
 }
 
 std::array<Vec3, 4> corners_of(const BodyPose& pose, Segment foot, const std::array<Vec3, 4>& sole) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "body/centre_of_mass.h"
+
 namespace ukemi {
 namespace {
 
@@ -158,10 +160,7 @@ BodyPose segments_of(const ArticulatedBody& body, const FigurePose& figure) {
 }
 
 Vec3 WholeBody::centre_of_mass(const BodyPose& segments) const {
-  Vec3 sum = Vec3::Zero();
-  for (int s = 0; s < kSegmentCount; ++s)
-    sum += body_.segments[s].mass_kg * (segments[s] * body_.segments[s].centre_of_mass);
-  return sum / body_.mass_kg;
+  return ukemi::centre_of_mass(body_, segments);
 }
 
 double WholeBody::lowest(const BodyPose& segments, Segment segment) const {
