@@ -13,22 +13,13 @@
 
 #include "bake/bake.h"
 #include "base/character_path.h"
+#include "blows.h"
 #include "judge/judge.h"
 #include "load/load.h"
 #include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
-}
 
 struct Blow {
   const Character* character = nullptr;
@@ -58,10 +49,9 @@ void run(const BakeSettings& base, Blow& blow) {
   if (const auto n_s = momentum(blow.blow)) {
     const auto prepared = prepare_bake(*blow.character, settings, diagnostics);
     if (!prepared) return void(blow.error = prepared.error().message());
-    const double size = prepared->body.mass_kg / 78.0 * std::sqrt(prepared->body.height_m / 1.78);
     settings.scene = SceneKind::impulse;
     settings.ball_mass_kg = 1.0;
-    settings.ball_speed_m_s = *n_s * size;
+    settings.ball_speed_m_s = momentum_for(prepared->body, *n_s);
   } else {
     (void)set(settings, "preset", blow.blow);
   }

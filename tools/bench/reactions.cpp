@@ -9,21 +9,12 @@
 
 #include "bake/bake.h"
 #include "base/character_path.h"
+#include "blows.h"
 #include "load/load.h"
 #include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == ',')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
-}
 
 struct ReactionRow {
   char digit = '?';
@@ -52,8 +43,7 @@ ReactionRow run(const Character& character, BakeSettings settings, const std::st
   }
   Scene scene = prepared->scene;
   scene.kind = SceneKind::impulse;
-  const double size = prepared->body.mass_kg / 78.0 * std::sqrt(prepared->body.height_m / 1.78);
-  scene.impulse_n_s = n_s * size;
+  scene.impulse_n_s = momentum_for(prepared->body, n_s);
   const double before = cpu();
   auto result = simulate(simulation_input(*prepared, scene, settings.simulation), diagnostics);
   for (const Choice& choice : choices_for(settings)) {
