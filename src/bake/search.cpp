@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "bake/response.h"
 #include "bake/stopwatch.h"
 #include "bake/take.h"
 #include "base/parallel.h"
@@ -114,7 +115,7 @@ Result<TriedTake> Search::tried(const Choice& choice) const {
 
 bool Search::reaches(const BakedClip& take) const {
   if (!settings_.outcome) return true;
-  const bool fell = take.behaviour.fall_begins_s.has_value();
+  const bool fell = response_of(take).outcome == Outcome::fell;
   return fell == (settings_.outcome == Wanted::fall);
 }
 

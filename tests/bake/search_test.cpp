@@ -81,6 +81,15 @@ TEST(Search, WhatNoPersonCouldDoIsSaidOrHelpedTo) {
   EXPECT_LT(helped.clip.figures.energy_gain_max_j, 6.0);
 }
 
+TEST(Search, ALimpBodyThatFellIsNotTakenForOneThatStood) {
+  BakeSettings settings = blow(25.0, "front");
+  settings.behaviour = Behaviour::limp;
+  settings.outcome = Wanted::stand;
+  const Baked fallen = baked(settings);
+  ASSERT_EQ(fallen.diagnostics.warnings().size(), 2u);  // the other: an outcome is for a body that lives
+  EXPECT_NE(fallen.diagnostics.warnings()[1].what.find("does not stand"), std::string::npos);
+}
+
 TEST(Search, HelpIsNotGivenWhereItIsNotNeeded) {
   BakeSettings settings = blow(25.0, "front");
   settings.outcome = Wanted::stand;
