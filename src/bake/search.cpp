@@ -184,7 +184,15 @@ Result<std::optional<TriedTake>> Search::helped() {
   return best;
 }
 
-std::string word_of(Wanted wanted) { return wanted == Wanted::stand ? "stand" : "fall"; }
+void warn_of_the_outcome(const BakeSettings& settings, int trials, Diagnostics& diagnostics) {
+  const std::string_view word = settings.outcome == Wanted::stand ? "stand" : "fall";
+  const std::string none = trials == 1 ? fmt::format("the trial does not {}", word)
+                                       : fmt::format("none of {} trials {}s", trials, word);
+  const std::string_view way_on = settings.assist
+                                      ? "help from outside was tried too: give another --strength"
+                                      : "--search N tries more, --assist lets a force from outside help";
+  diagnostics.warn("", fmt::format("{}: this is what the body does of itself; {}", none, way_on));
+}
 
 }  // namespace
 
@@ -220,14 +228,7 @@ Result<BakedClip> search_take(const Character& character, const BakeSettings& se
   }
   for (const Warning& warning : (*best)->diagnostics.warnings())
     diagnostics.warn(warning.subject, warning.what);
-  if (!reached)
-    diagnostics.warn(
-        "",
-        fmt::format("{} {}: this is what the body does of itself; --search N tries more, --assist "
-                    "lets a force from outside help",
-                    search.trials() == 1 ? std::string("the trial does not")
-                                         : fmt::format("none of {} trials", search.trials()),
-                    search.trials() == 1 ? word_of(*settings.outcome) : word_of(*settings.outcome) + "s"));
+  if (!reached) warn_of_the_outcome(settings, search.trials(), diagnostics);
   if (search.interrupted())
     diagnostics.warn("", fmt::format("stopped after {} of {} trials; the best of them is kept",
                                      search.trials(), choices.size()));

@@ -56,17 +56,6 @@ std::string blow_text(const BakeSettings& settings, const Scene& scene) {
   return fmt::format("{}: {} kg at {} m/s", what, scene.ball_mass_kg, scene.ball_speed_m_s);
 }
 
-std::string title_of(const Character& character, const BakeSettings& settings, const Scene& scene) {
-  if (scene.kind == SceneKind::fall)
-    return fmt::format("{}: falls away from {}", character.name, settings.from.text);
-  if (scene.kind == SceneKind::none) return fmt::format("{}: unhit", character.name);
-  if (scene.kind == SceneKind::slip)
-    return fmt::format("{}: the feet slip away to {}", character.name, settings.from.text);
-  if (scene.kind == SceneKind::pull)
-    return fmt::format("{}: {} pulled to {}", character.name, name(scene.target), settings.from.text);
-  return fmt::format("{}: {} hit from {}", character.name, name(scene.target), settings.from.text);
-}
-
 std::vector<Fact> facts_of(const BakeSettings& settings, const BakedClip& outcome) {
   const LimitFigures& limits = outcome.limits;
   const SimulationFigures& figures = outcome.figures;
@@ -217,7 +206,7 @@ Shot shot_of(const Character& character, const BakeSettings& settings, const Bak
   shot.props = &trajectory.props;
   shot.impact_point = trajectory.impact_point;
   shot.impact_direction = trajectory.impact_direction;
-  shot.title = title_of(character, settings, outcome.prepared.scene);
+  shot.title = fmt::format("{}: {}", character.name, blow_in_words(settings, outcome.prepared.scene));
   shot.facts = facts_of(settings, outcome);
   return shot;
 }

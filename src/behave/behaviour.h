@@ -10,7 +10,7 @@ namespace ukemi {
 
 enum class Behaviour {
   alert,  // balances, steps, protects itself
-  dazed,  // the same late and weakly, with at most one step
+  dazed,  // the same late and weakly, with one step to catch himself
   limp    // tone alone, which fades
 };
 

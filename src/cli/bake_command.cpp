@@ -15,6 +15,7 @@
 #include "cli/progress_line.h"
 #include "cli/settings_options.h"
 #include "cli/stop_signals.h"
+#include "prepare/impact.h"
 
 namespace ukemi {
 namespace {
@@ -75,10 +76,10 @@ std::string summary(const BakeRequest& request, const BakedFile& baked) {
   const BakedClip& outcome = baked.outcome;
   const LimitFigures& limits = outcome.limits;
   const SimulationFigures& figures = outcome.figures;
-  std::string text =
-      fmt::format("{} hit from {}: {:.1f} N s on {:.2f} m, {:.1f} kg\n", name(outcome.prepared.scene.target),
-                  request.settings.from.text, figures.momentum_n_s, outcome.prepared.humanoid.height_m,
-                  outcome.prepared.body.mass_kg);
+  std::string text = blow_in_words(request.settings, outcome.prepared.scene);
+  if (figures.momentum_n_s > 0.0) text += fmt::format(": {:.1f} N s", figures.momentum_n_s);
+  text += fmt::format("; {:.2f} m, {:.1f} kg\n", outcome.prepared.humanoid.height_m,
+                      outcome.prepared.body.mass_kg);
   text += fmt::format("{:.2f} s, {} frames at {} fps; {}, {}\n", outcome.timeline.clip.duration_s(),
                       outcome.timeline.clip.frames.size(), outcome.timeline.clip.fps,
                       outcome_text(response_of(outcome)),

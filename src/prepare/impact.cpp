@@ -295,6 +295,23 @@ Result<Scene> scene_of(const BakeSettings& settings, const BodyPose& start) {
   return scene;
 }
 
+std::string blow_in_words(const BakeSettings& settings, const Scene& scene) {
+  const std::string_view target = name(scene.target);
+  const std::string& side = settings.from.text;
+  switch (scene.kind) {
+    case SceneKind::none:
+      return "unhit";
+    case SceneKind::fall:
+      return fmt::format("falls away from {}", side);
+    case SceneKind::slip:
+      return fmt::format("the feet slip away to {}", side);
+    case SceneKind::pull:
+      return fmt::format("{} pulled to {}", target, side);
+    default:
+      return fmt::format("{} hit from {}", target, side);
+  }
+}
+
 Status check_preset(const std::string& text) {
   const auto preset = preset_named(text);
   return preset ? Status(Done{}) : Status(preset.error());

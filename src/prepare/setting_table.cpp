@@ -407,7 +407,8 @@ Settings behaviour_settings_table() {
       with_unset(choice<S, std::optional<Behaviour>>(
                      "behaviour",
                      {{"alert", Behaviour::alert}, {"dazed", Behaviour::dazed}, {"limp", Behaviour::limp}},
-                     "alert: balances, steps, protects itself; dazed: late and weak, at most one step; limp: "
+                     "alert: balances, steps, protects itself; dazed: late and weak, one step to catch "
+                     "himself; limp: "
                      "a body that nobody is in, which --stiffness stiffens at first",
                      [](auto& s) -> auto& { return s.behaviour; }),
                  "alert, or limp with --rate fixed"),

@@ -164,6 +164,20 @@ TEST(Scene, OfATripTakesTheFootThatIsInTheAir) {
   EXPECT_EQ(scene("trip", Segment::shank_r).target, Segment::shank_r);
 }
 
+TEST(Scene, IsSaidInWords) {
+  BakeSettings settings;
+  const auto words = [&](SceneKind kind) {
+    Scene scene;
+    scene.kind = kind, scene.target = Segment::hand_l;
+    return blow_in_words(settings, scene);
+  };
+  EXPECT_EQ(words(SceneKind::none), "unhit");
+  EXPECT_EQ(words(SceneKind::ball), "hand_l hit from front");
+  EXPECT_EQ(words(SceneKind::pull), "hand_l pulled to front");
+  EXPECT_EQ(words(SceneKind::slip), "the feet slip away to front");
+  EXPECT_EQ(words(SceneKind::fall), "falls away from front");
+}
+
 TEST(Scene, OfASlipOrAPullGoesToWhereTheBlowComesFrom) {
   const Vec3 forward = Vec3::UnitX();  // the default is from the front
   EXPECT_LT((scene("kick", Segment::chest).direction + forward).norm(), 1e-12);
