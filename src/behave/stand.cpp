@@ -37,7 +37,8 @@ constexpr double kLongestStep = 1.03;  // of the leg
 constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
 constexpr double kBearing_s = 0.02;    // until a foot off the ground pushes no more
 constexpr double kSlipped = 0.10;      // m: a foot that was moved so far stands there now
-constexpr double kHeel = 1.03;         // of the leg, by the heel
+constexpr double kSinking = 0.82, kSunk = 0.72;  // height of the centre of mass over that at home
+constexpr double kHeel = 1.03;                  // of the leg, by the heel
 
 }  // namespace
 
@@ -427,18 +428,20 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
   if (lost_s_ || active(senses.time_s) <= 0.0) return;
   const double reach = settings_.most_steps == 0 ? m(0.25) : kOutOfReach * physique_.leg_length_m;
   const double tilt = (senses.pose[0].rotation * home_[0].rotation.conjugate() * Vec3::UnitY()).y();
+  // A long robe touches the ground beside feet that stand.
   const bool touches =
+      senses.com.y() < kSinking * home_height_ &&
       std::any_of(senses.contacts.begin(), senses.contacts.end(), [](const SegmentContact& c) {
         return c.with == SegmentContact::With::floor && c.segment != Segment::foot_l &&
                c.segment != Segment::foot_r;
       });
   const bool gives_in = settings_.gives_in_s && senses.time_s >= s(*settings_.gives_in_s);
-  const char* why = gives_in                               ? "gives in"
-                    : beyond(view.outer, view.icp) > reach ? "icp"
-                    : senses.com.y() < 0.72 * home_height_ ? "low"
-                    : tilt < 0.5                           ? "tilt"
-                    : touches                              ? "touch"
-                                                           : nullptr;
+  const char* why = gives_in                                ? "gives in"
+                    : beyond(view.outer, view.icp) > reach  ? "icp"
+                    : senses.com.y() < kSunk * home_height_ ? "low"
+                    : tilt < 0.5                            ? "tilt"
+                    : touches                               ? "touch"
+                                                            : nullptr;
   if (why == nullptr) return;
   lost_s_ = senses.time_s;
   lost_why_ = why;

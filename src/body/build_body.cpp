@@ -124,6 +124,15 @@ double uncovered(Segment segment, const std::vector<Vec3>& skin, const BodyPose&
   return most;
 }
 
+constexpr double kHem = 0.85;  // of the shank
+
+/// The hem of a trouser leg moves with the shank, but a foot below it is what stands.
+std::vector<Vec3> above_the_ankle(std::vector<Vec3> points, const Vec3& ankle) {
+  const auto below = [&ankle](const Vec3& point) { return point.dot(ankle) > kHem * ankle.squaredNorm(); };
+  points.erase(std::remove_if(points.begin(), points.end(), below), points.end());
+  return points;
+}
+
 /// The skin that shapes cover badly gets points of its own on the floor.
 void add_floor_points(const PerSegment<std::vector<Vec3>>& skin, const BodyPose& segments,
                       ArticulatedBody& body) {
@@ -133,6 +142,13 @@ void add_floor_points(const PerSegment<std::vector<Vec3>>& skin, const BodyPose&
     const bool is_hand = segment_at(s) == Segment::hand_l || segment_at(s) == Segment::hand_r;
     const double allowed = (is_hand ? kUncoveredHand : kUncovered) * body.height_m;
     if (uncovered(segment_at(s), skin[s], segments, body) > allowed) segment.floor_points = skin[s];
+  }
+  for (const auto& [shank, foot] :
+       {std::pair(Segment::shank_l, Segment::foot_l), std::pair(Segment::shank_r, Segment::foot_r)}) {
+    if (body.segments[index(foot)].shapes.empty()) continue;
+    std::vector<Vec3>& points = body.segments[index(shank)].floor_points;
+    points = above_the_ankle(std::move(points),
+                             segments[index(shank)].inverse() * segments[index(foot)].translation);
   }
 }
 
