@@ -34,6 +34,7 @@ constexpr double kOnFront = 0.5;   // side_down.x(): who lands so comes to lie o
 constexpr double kYielding = 0.1;  // share of its effort that an arm keeps where nothing sinks on to it
 constexpr double kHipsThrough = 1.2,
                  kLooseKnees = 0.05;  // efforts while a kneeling body goes on to the belly
+constexpr double kArmAtRest = 0.1;    // effort on the back: too weak to hold a hand up in the air
 constexpr double kFlatAfter_s = 0.03, kFlatAtLast_s = 0.4;  // trunk down, or landed: then the legs lie down
 constexpr double kMoving = 1.2;  // effort besides, amid the way to where a part will lie
 
@@ -370,6 +371,7 @@ double Falling::lying_share(Joint joint) const {
         return (is_hip(joint) ? kHipsThrough : kLooseKnees) * settings_.propping;
       return (pose_ == EndPose::prone && !report_.settled_s ? 0.4 : 0.22) * settings_.propping;
     default:
+      if (pose_ == EndPose::supine) return kArmAtRest * settings_.propping;
       return (seated ? 0.6 : landing_.chest_down_s() ? 0.25 : 0.15) * settings_.propping;
   }
 }

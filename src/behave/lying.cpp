@@ -56,7 +56,7 @@ void lie_supine(BodySide lead, double turn, PerJoint<Quat>& goals) {
   set_trunk({6.0, 0.0, 0.0}, {8.0, 0.0, turn * 20.0}, goals);
   set_leg(lead, {46.0, 6.0, 0.0, 78.0, 0.0}, goals);
   set_leg(other(lead), {8.0, 9.0, -12.0, 12.0, -15.0}, goals);
-  set_arm(lead, {25.0, 22.0, 50.0, 95.0, 30.0, 0.0}, goals);
+  set_arm(lead, {12.0, 24.0, 70.0, 88.0, 45.0, 0.0}, goals);
   set_arm(other(lead), {0.0, 38.0, 10.0, 30.0, 40.0, 0.0}, goals);
 }
 

@@ -122,6 +122,20 @@ TEST(FirstContacts, OfWhoStandsAreNone) {
   EXPECT_FALSE(mark(clip, "hand_contact"));
 }
 
+TEST(Supine, NoHandStaysUpInTheAir) {
+  for (const char* from : {"front", "left", "right"}) {
+    BakeSettings settings;
+    settings.scene = SceneKind::impulse;
+    settings.ball_mass_kg = 1.0;
+    settings.ball_speed_m_s = 90.0;
+    settings.from = *parse_direction(from);
+    const BakedClip clip = baked(settings);
+    EXPECT_EQ(response_of(clip).end_pose, EndPose::supine) << from;
+    for (const Segment hand : {Segment::hand_l, Segment::hand_r})
+      EXPECT_LT(clip.timeline.trajectory.frames.back()[index(hand)].translation.y(), 0.24) << from;
+  }
+}
+
 TEST(Breath, IsSeenForASecondUnlessItIsSwitchedOff) {
   BakeSettings settings = kick("front", 0);
   settings.simulation.duration_s = 8.0;

@@ -93,6 +93,30 @@ TEST(SkinOnFloor, ShapesThatCoverTheMeshHaveNoPointsOfTheirOwn) {
   EXPECT_GT(points_of(big_head())[index(Segment::head)], 4u);
 }
 
+/// Trousers that reach the floor beside the feet.
+Character wide_trousers() {
+  Character character = figure();
+  for (const char* shank : {"LeftLeg", "RightLeg"})
+    change_skin_of(character, shank, [](Eigen::Vector3f& p) {
+      if (p.y() < 0.3f) p = Eigen::Vector3f(p.x() + (p.x() > 0.0f ? 0.08f : -0.08f), 0.004f, 1.4f * p.z());
+    });
+  return character;
+}
+
+TEST(SkinOnFloor, AHemThatHangsToItIsNoFall) {
+  BakeSettings settings;
+  settings.scene = SceneKind::impulse;
+  settings.ball_mass_kg = 1.0;
+  settings.ball_speed_m_s = 30.0;
+  settings.from = *parse_direction("right");
+  settings.hit = Segment::pelvis;
+  Diagnostics diagnostics;
+  const auto baked = bake(wide_trousers(), settings, diagnostics);
+  ASSERT_TRUE(baked) << baked.error().message();
+  EXPECT_FALSE(baked->behaviour.fall_begins_s);
+  EXPECT_FALSE(baked->figures.first_ground_contact_s);
+}
+
 TEST(SkinOnFloor, WhatAHandHoldsIsSaidToSink) {
   Character character = figure();
   Skeleton& skeleton = character.skeleton;

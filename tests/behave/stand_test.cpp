@@ -13,8 +13,8 @@ struct Blow {
   double n_s = 0.0;
 };
 
-SimulationResult lives(const Blow& blow, const BehaviourSettings& behaviour = {}, double duration_s = 4.0) {
-  static const test::StandingMan man;
+SimulationResult lives(const Blow& blow, const BehaviourSettings& behaviour = {}, double duration_s = 4.0,
+                       const test::StandingMan& man = test::StandingMan()) {
   Scene scene;
   scene.kind = blow.n_s > 0.0 ? SceneKind::impulse : SceneKind::none;
   scene.target = blow.segment;
@@ -24,7 +24,7 @@ SimulationResult lives(const Blow& blow, const BehaviourSettings& behaviour = {}
   settings.duration_s = duration_s;
   settings.stop_at_rest = false;
   static const auto thresholds = load_active_thresholds("");
-  static const auto strength = muscle_strength(man.body, Sex::male, 1.0);
+  const auto strength = muscle_strength(man.body, Sex::male, 1.0);
   const StartState start = man.start();
   Diagnostics diagnostics;
   auto result =
@@ -67,6 +67,14 @@ TEST(Stand, SwaysBackFromAWeakBlowWithPlantedFeet) {
     const BodyPose& start = run.trajectory.frames.front();
     EXPECT_LT((end[0].translation - start[0].translation).norm(), 0.015);
   }
+}
+
+TEST(Stand, ARobeThatTouchesTheFloorIsNoFall) {
+  test::StandingMan man;
+  man.body.segments[index(Segment::thigh_l)].floor_points = {{0.12, -0.915, -0.15}, {-0.12, -0.915, -0.15}};
+  const SimulationResult run = lives({Segment::chest, Vec3::UnitZ(), 8.0}, {}, 4.0, man);
+  EXPECT_TRUE(run.figures.touch_down[index(Segment::thigh_l)].has_value());
+  EXPECT_FALSE(run.behaviour.fall_begins_s);
 }
 
 TEST(Stand, StepsFromAStrongerBlowAndStaysUp) {
