@@ -110,8 +110,8 @@ enum class StartPose { rest, stand, guard };
 
 /// How "stand" is stood in.
 struct StanceOptions {
-  /// As people do: the weight 3 cm ahead of the ankles, a foot a little ahead, more weight on one leg,
-  /// unequal arms. Otherwise even, the weight over the ankles.
+  /// As people do: the weight 3 cm ahead of the ankles (more where heels are short), a foot a little ahead,
+  /// more weight on one leg, unequal arms. Otherwise even, the weight over the ankles.
   bool living = false;
   /// A living stance that leans into a blow from there (front, right; unit), feet apart and knees bent. Zero:
   /// at ease.

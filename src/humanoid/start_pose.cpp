@@ -212,19 +212,44 @@ BodyPose body_in(const Stance& stance, const BodyPose& from) {
   return figure.to;
 }
 
+/// Of the skin around the foot bones, along a direction of the world (unit), file units.
+SkinExtent extent_of_feet(const Character& character, const Humanoid& humanoid, const Pose& pose,
+                          std::initializer_list<Segment> feet, const Vec3& direction) {
+  std::vector<char> in_foot(character.skeleton.nodes.size(), 0);
+  for (const Segment foot : feet)
+    if (humanoid.carrier_node(foot) >= 0) in_foot[humanoid.carrier_node(foot)] = 1;
+  for (const int i : character.skeleton.order) {
+    const int parent = character.skeleton.nodes[i].parent;
+    if (parent >= 0 && in_foot[parent]) in_foot[i] = 1;
+  }
+  return skin_extent(character, world_transforms(character.skeleton, pose),
+                     humanoid.world_from_file.rotation.conjugate() * direction,
+                     [&](int node) { return in_foot[node] != 0; });
+}
+
+/// How much shorter than a man's the heels are behind the ankles, metres. People stand with their weight amid
+/// the foot: short heels go back by as much.
+double short_heels(const Character& character, const Humanoid& humanoid, const BodyPose& from) {
+  constexpr double kHeel = 0.036;  // of the height, behind the ankle
+  const Vec3 forward = heading_of(from[index(Segment::pelvis)].rotation) * Vec3::UnitX();
+  double missing = 0.0;
+  for (const Segment foot : {Segment::foot_l, Segment::foot_r}) {
+    const SkinExtent extent = extent_of_feet(character, humanoid, humanoid.reference, {foot}, forward);
+    if (!extent.found) return 0.0;
+    const double heel = from[index(foot)].translation.dot(forward) -
+                        humanoid.world_from_file.scale * extent.min -
+                        humanoid.world_from_file.translation.dot(forward);
+    missing += 0.5 * std::clamp(kHeel * humanoid.height_m - heel, 0.0, kHeel * humanoid.height_m);
+  }
+  return missing;
+}
+
 /// Lowest point of the feet in the world, metres: of the skin around the foot bones, else a guess from the
 /// bones.
 double lowest_sole(const Character& character, const Humanoid& humanoid, const Pose& pose) {
   const std::vector<Affine> world = world_transforms(character.skeleton, pose);
-  const Vec3 up_in_file = humanoid.world_from_file.rotation.conjugate() * Vec3::UnitY();
-  const int feet[] = {humanoid.carrier_node(Segment::foot_l), humanoid.carrier_node(Segment::foot_r)};
-  std::vector<char> in_foot(character.skeleton.nodes.size(), 0);
-  for (const int i : character.skeleton.order) {
-    const int parent = character.skeleton.nodes[i].parent;
-    in_foot[i] = i == feet[0] || i == feet[1] || (parent >= 0 && in_foot[parent]);
-  }
   const SkinExtent extent =
-      skin_extent(character, world, up_in_file, [&](int node) { return in_foot[node] != 0; });
+      extent_of_feet(character, humanoid, pose, {Segment::foot_l, Segment::foot_r}, Vec3::UnitY());
   if (extent.found) return humanoid.world_from_file.scale * extent.min;
   const BodyPose body = segments_of(character.skeleton, humanoid, pose);
   double lowest = 1e300;
@@ -375,10 +400,15 @@ Pose start_pose(const Character& character, const Humanoid& humanoid, StartPose 
                 const StanceOptions& stance) {
   if (kind == StartPose::rest) return stand_on_floor(character, humanoid, rest_on_feet(character, humanoid));
   const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
-  const BodyPose to = kind == StartPose::guard
-                          ? guard(character, humanoid, from)
-                          : stand(character, humanoid, from,
-                                  stance.living ? living_stance(stance.braced_against, stance.seed) : kStand);
+  Stance standing = kStand;
+  if (stance.living) {
+    standing = living_stance(stance.braced_against, stance.seed);
+    const double back = short_heels(character, humanoid, from) / leg_length(from, true);
+    standing.leg_l.forwards -= back;
+    standing.leg_r.forwards -= back;
+  }
+  const BodyPose to = kind == StartPose::guard ? guard(character, humanoid, from)
+                                               : stand(character, humanoid, from, standing);
   return stand_on_floor(character, humanoid,
                         pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, to));
 }

@@ -19,12 +19,12 @@ struct Standing {
   Pose pose;
   BodyPose body;
 
-  Standing(Character c, StartPose kind) : character(std::move(c)) {
+  Standing(Character c, StartPose kind, const StanceOptions& stance = {}) : character(std::move(c)) {
     Diagnostics diagnostics;
     const auto result = map_humanoid(character, {}, diagnostics);
     EXPECT_TRUE(result);
     humanoid = *result;
-    pose = start_pose(character, humanoid, kind);
+    pose = start_pose(character, humanoid, kind, stance);
     body = canonical_segments_of(character.skeleton, humanoid, pose);
   }
   const Rigid& at(Segment s) const { return body[index(s)]; }
@@ -138,8 +138,14 @@ TEST(StartPose, LeavesFingersAsTheyAre) {
             standing.character.skeleton.nodes[finger].rest.rotation.coeffs());
 }
 
-/// A skin of one sole vertex 2 cm below each toe joint and one on top of the head.
-void add_skin(Character& character) {
+Vec3 heading_forward(const Quat& pelvis) {
+  const Vec3 forward = pelvis * Vec3::UnitX();
+  return Vec3(forward.x(), 0.0, forward.z()).normalized();
+}
+
+/// A skin of one sole vertex 2 cm below each toe joint, one `heel_m` behind each ankle and one on top of the
+/// head.
+void add_skin(Character& character, double heel_m = 0.06) {
   const Skeleton& skeleton = character.skeleton;
   const std::vector<Affine> world = world_transforms(skeleton, rest_pose(skeleton));
   Skin skin;
@@ -156,6 +162,8 @@ void add_skin(Character& character) {
   };
   add("mixamorig:LeftToeBase", Vec3(0, -0.02, 0));
   add("mixamorig:RightToeBase", Vec3(0, -0.02, 0));
+  add("mixamorig:LeftFoot", Vec3(0, 0, -heel_m));
+  add("mixamorig:RightFoot", Vec3(0, 0, -heel_m));
   add("mixamorig:HeadTop_End", Vec3::Zero());
   character.skins.push_back(skin);
   character.parts.push_back(part);
@@ -205,6 +213,22 @@ TEST(StartPose, GuardHoldsTheFistsOutOfALargeHead) {
           << half_edge << ": " << name(segment) << " " << fist.transpose();
     }
   }
+}
+
+TEST(StartPose, OfTheLivingIsFartherAheadOfTheAnklesWhereHeelsAreShort) {
+  const auto ahead_m = [](double heel_m) {
+    Character character = figure();
+    add_skin(character, heel_m);
+    StanceOptions options;
+    options.living = true;
+    const Standing man(character, StartPose::stand, options);
+    const Vec3 ankles = 0.5 * (man.at(Segment::foot_l).translation + man.at(Segment::foot_r).translation);
+    const Vec3 forward = heading_forward(man.at(Segment::pelvis).rotation);
+    return std::pair((man.at(Segment::pelvis).translation - ankles).dot(forward), man.humanoid.height_m);
+  };
+  const auto [usual, height] = ahead_m(0.07);
+  EXPECT_NEAR(ahead_m(0.09).first, usual, 1e-9);
+  EXPECT_NEAR(ahead_m(0.02).first - usual, 0.036 * height - 0.02, 0.004);
 }
 
 TEST(StartPose, TheLowestSolePointOfTheSkinStandsOnTheFloor) {
