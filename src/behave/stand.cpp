@@ -38,7 +38,10 @@ constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
 constexpr double kBearing_s = 0.02;    // until a foot off the ground pushes no more
 constexpr double kSlipped = 0.10;      // m: a foot that was moved so far stands there now
 constexpr double kSinking = 0.82, kSunk = 0.72;  // height of the centre of mass over that at home
-constexpr double kHeel = 1.03;                  // of the leg, by the heel
+constexpr double kToesClear = 0.03;              // m: toes of a foot in the air are so far from the ground
+constexpr double kLevelBy = 0.5;                 // of the step: then the foot is level
+constexpr double kSwungUntil = 0.9;              // of the step: then it comes down
+constexpr double kHeel = 1.03;                   // of the leg, by the heel
 
 }  // namespace
 
@@ -605,13 +608,23 @@ Vec3 Standing::swing_ankle(double time_s) const {
   at.y() +=
       m(most) * bump * std::clamp((m(0.09) - swing_.from.y() + leg_in_air.home_ankle_m) / m(0.09), 0.0, 1.0) -
       m_s(0.5) * std::max(0.0, time_s - swing_.lift_s - swing_.span_s);
+  // The toes of a foot that has not come level yet clear the ground too.
+  const Quat turned = swing_foot(phase, foot);
+  double lowest = 0.0;
+  for (const Vec3& corner : leg_in_air.sole) lowest = std::min(lowest, (turned * corner).y());
+  const double clear = m(kToesClear) * (1.0 - min_jerk((phase - 0.6) / 0.3));
+  if (phase < kSwungUntil) at.y() = std::max(at.y(), min_jerk(phase / 0.15) * (clear - lowest));
   return at;
+}
+
+/// Orientation of the foot in the air, on its way to `level`.
+Quat Standing::swing_foot(double phase, const Quat& level) const {
+  return swing_.from_foot.slerp(min_jerk(phase / kLevelBy), level);
 }
 
 LegPosture Standing::swinging_posture(const Vec3& hip_at, double time_s) const {
   LegPosture posture = leg(swing_.side).reach(hip_at, swing_ankle(time_s), swing_.to_yaw, swing_.to_yaw);
-  const double phase = (time_s - swing_.lift_s) / swing_.span_s;
-  posture.foot = swing_.from_foot.slerp(min_jerk(phase / 0.8), posture.foot);
+  posture.foot = swing_foot((time_s - swing_.lift_s) / swing_.span_s, posture.foot);
   return posture;
 }
 
@@ -652,11 +665,12 @@ void Standing::ask_standing_leg(const Senses& senses, const View& view, const Wr
   const std::array<Quat, 4> goal = {attitude, now.thigh, now.shank, now.foot};
   const std::array<Quat, 4> soon = {attitude, next.thigh, next.shank, next.foot};
   const std::array<double, 3> share = {0.76 * soft, 0.76 * soft, 0.25 * soft};
+  const double bearing = under_way_ ? 1.0 : bearing_[i];  // a gait rolls over its feet
   for (int k = 0; k < 3; ++k) {
     const Vec3 at = joint_at(senses, joints[k]);
     const Vec3 arm = at_height(wrench.pressure[i], 0.0) - at;
-    const Vec3 carried = -(arm.cross(bearing_[i] * wrench.share[i] * wrench.force) +
-                           physique_.weight_torque(senses, joints[k]));
+    const Vec3 carried =
+        -(arm.cross(bearing * wrench.share[i] * wrench.force) + physique_.weight_torque(senses, joints[k]));
     const Quat relative = goal[k].conjugate() * goal[k + 1];
     const Quat later = soon[k].conjugate() * soon[k + 1];
     const Quat& parent = senses.pose[ukemi::index(chain[k])].rotation;

@@ -114,6 +114,7 @@ class Standing {
   LegPosture standing_posture(const Senses& senses, const View& view, BodySide side, const Vec2& shift) const;
   LegPosture swinging_posture(const Vec3& hip_at, double time_s) const;
   Vec3 swing_ankle(double time_s) const;
+  Quat swing_foot(double phase, const Quat& level) const;
   void ask_standing_leg(const Senses& senses, const View& view, const Wrench& wrench, BodySide side);
   void ask_swinging_leg(const Senses& senses);
   void ask_upper_body(const Senses& senses);

@@ -162,9 +162,15 @@ void Collision::accept_overlaps() {
   for (std::size_t p = 0; p < pairs_.size(); ++p) pairs_[p].accepted += now.depth[p];
 }
 
+void Collision::forget_overlaps(const Contacts& present) {
+  for (std::size_t p = 0; p < pairs_.size(); ++p)
+    if (is_floor(p)) pairs_[p].accepted = std::min(pairs_[p].accepted, present.overlap[p]);
+}
+
 Contacts Collision::find(bool whole_soles) const {
   Contacts found;
   found.depth.assign(pairs_.size(), 0.0);
+  found.overlap.assign(pairs_.size(), 0.0);
   std::array<dContactGeom, kMaxContacts> buffer;
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const Pair& pair = pairs_[p];
@@ -177,6 +183,7 @@ Contacts Collision::find(bool whole_soles) const {
                                        : points_on_floor(b.points, a.geom, b.geom, buffer);
     for (int i = 0; i < count; ++i) {
       const dContactGeom& touch = buffer[i];
+      found.overlap[p] = std::max(found.overlap[p], touch.depth);
       const double depth = touch.depth - pair.accepted;
       if (depth <= 0.0) continue;
       found.points.push_back({p, vec3(touch.pos), vec3(touch.normal), depth, touch.g1, touch.g2});

@@ -30,7 +30,8 @@ struct Contacts {
     dGeomID a = nullptr, b = nullptr;
   };
   std::vector<Point> points;
-  std::vector<double> depth;  // deepest point of each pair, m; 0 where apart
+  std::vector<double> depth;    // deepest point of each pair, m; 0 where apart
+  std::vector<double> overlap;  // the same with what was accepted of it at the start
   double floor_penetration = 0.0, self_penetration = 0.0;
   bool ground = false;  // the body touches the floor
   bool ground_beyond_feet = false;
@@ -48,6 +49,8 @@ class Collision {
   void add_prop(dGeomID geom, dBodyID body);
   /// Overlaps of the present pose that are no contact: shapes that fit a character may overlap at the start.
   void accept_overlaps();
+  /// What has come out of the floor meets it from then on. After an accepted step.
+  void forget_overlaps(const Contacts& present);
   /// `whole_soles`: with every corner of the soles, so that a standing foot does not rock.
   Contacts find(bool whole_soles = false) const;
   bool is_floor(std::size_t pair) const { return pairs_[pair].kind == PairKind::floor; }

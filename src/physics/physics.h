@@ -65,6 +65,8 @@ class Physics {
   Diverged fastest(double time_s, std::string how) const;
 
   Contacts find_contacts() const { return collision_.find(firm_soles_); }
+  /// See Collision::forget_overlaps.
+  void forget_overlaps(const Contacts& present) { collision_.forget_overlaps(present); }
   bool is_floor(std::size_t pair) const { return collision_.is_floor(pair); }
   std::vector<double> joint_excesses() const;
   double worst_separation() const;

@@ -42,20 +42,28 @@ double foot_height(const BodyPose& home, const BodyPose& pose, Segment foot) {
   return pose[index(foot)].translation.y() - home[index(foot)].translation.y();
 }
 
-/// When each foot of a motion that is in the air at the start comes down, s from then.
+/// When each foot of a motion that is in the air at the start comes down, s from then: it is low and goes on
+/// ahead of the pelvis no more. A foot that swings past the other is as low.
 UnderWay under_way_of(const Character& character, const Prepared& prepared) {
   constexpr double kStep_s = 1.0 / 120.0;
   constexpr double kLookAhead_s = 0.6;
+  const Vec2 way = on_ground(prepared.start.state.linear_velocity[index(Segment::pelvis)]);
   UnderWay under_way;
+  BodyPose before = prepared.start.state.segments;
   for (int i = 1; i * kStep_s <= kLookAhead_s; ++i) {
     const Pose pose = unhit_pose(character.skeleton, prepared.humanoid, prepared.start, i * kStep_s);
     BodyPose segments = canonical_segments_of(character.skeleton, prepared.humanoid, pose);
     for (Rigid& segment : segments) segment.translation.y() -= prepared.start.floor_m;
     for (const BodySide side : kSides) {
       const Segment foot = side == BodySide::left ? Segment::foot_l : Segment::foot_r;
+      const auto ahead = [&](const BodyPose& body) {
+        return on_ground(body[index(foot)].translation - body[0].translation).dot(way);
+      };
       auto& lands = under_way.lands_in_s[static_cast<int>(side)];
-      if (!lands && foot_height(prepared.home, segments, foot) < kOffFloor_m) lands = i * kStep_s;
+      const bool low = foot_height(prepared.home, segments, foot) < kOffFloor_m;
+      if (!lands && low && ahead(segments) <= ahead(before)) lands = i * kStep_s;
     }
+    before = segments;
   }
   return under_way;
 }

@@ -144,6 +144,7 @@ void Simulation::accept(int ticks, const StepResult& step, double projected, Con
   const double work = physics_.accept(time_s(), h);
   ticks_ += ticks;
   contacts_ = std::move(next);
+  physics_.forget_overlaps(contacts_);
   recorder_.excess_of_step(step.excesses, projected);
   recorder_.step(time_s(), h, contacts_, physics_.scene().prop_energy(), work, step.separation_m);
   recorder_.muscles(physics_.muscle_share(), physics_.muscle_work_j());

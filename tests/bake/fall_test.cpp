@@ -122,6 +122,20 @@ TEST(FirstContacts, OfWhoStandsAreNone) {
   EXPECT_FALSE(mark(clip, "hand_contact"));
 }
 
+TEST(Walk, StopsFromAnyPhaseOfTheStrideWithoutABlow) {
+  for (const double at_s : {0.1, 0.28, 0.46, 0.64, 0.81, 0.99}) {
+    BakeSettings settings;
+    settings.scene = SceneKind::none;
+    settings.clip = "walk";
+    settings.at_s = at_s;
+    const BakedClip clip = baked(settings);
+    EXPECT_FALSE(clip.behaviour.fall_begins_s) << at_s;
+    EXPECT_EQ(response_of(clip).end_pose, EndPose::standing) << at_s;
+    EXPECT_LE(clip.behaviour.steps.size(), 5u) << at_s;
+    EXPECT_EQ(clip.limits.over_1deg, 0) << at_s;
+  }
+}
+
 TEST(Supine, NoHandStaysUpInTheAir) {
   for (const char* from : {"front", "left", "right"}) {
     BakeSettings settings;

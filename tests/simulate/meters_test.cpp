@@ -190,6 +190,30 @@ TEST(Depth, OfFeetInTheFloor) {
   EXPECT_NEAR(contacts_of(man, pose).floor_penetration, before + 0.03, 1e-9);
 }
 
+TEST(Depth, AFootThatHasComeOutOfTheFloorMeetsItAgain) {
+  const test::StandingMan man;
+  OdeWorld world;
+  Model model(world, man.body, man.range);
+  Collision collision(world, model, man.body, true);
+  PerSegment<Vec3> still;
+  still.fill(Vec3::Zero());
+  const auto at = [&](double down_m) {
+    BodyPose pose = man.segments;
+    for (Rigid& segment : pose) segment.translation.y() -= down_m;
+    model.place(pose, still, still);
+    return collision.find();
+  };
+  at(0.05);
+  collision.accept_overlaps();
+  EXPECT_EQ(at(0.05).floor_penetration, 0.0);
+  EXPECT_NEAR(at(0.06).floor_penetration, 0.01, 1e-9);
+  collision.forget_overlaps(at(0.02));
+  EXPECT_NEAR(at(0.06).floor_penetration, 0.04, 1e-9);
+  collision.forget_overlaps(at(-0.5));
+  EXPECT_NEAR(at(0.06).floor_penetration - at(0.02).floor_penetration, 0.04, 1e-9);
+  EXPECT_GT(at(0.02).floor_penetration, 0.0);
+}
+
 TEST(Depth, OfAHandInTheBelly) {
   const test::StandingMan man;
   const Shape& belly = man.body.segments[index(Segment::abdomen)].shapes.front();
