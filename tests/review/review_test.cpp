@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/bake.h"
+#include "base/base64.h"
 #include "base/files.h"
 #include "clip/frames.h"
-#include "export/container.h"
 #include "judge/rom_figures.h"
 #include "load/load.h"
 #include "review/clip.h"
@@ -230,9 +230,9 @@ TEST_F(Reviewed, RefusesWhatIsNoBatch) {
 
 template <typename Number>
 std::vector<Number> unpacked(const Json& text) {
-  const auto bytes = data_of("data:;base64," + text.get<std::string>());
-  std::vector<Number> values(bytes->size() / sizeof(Number));
-  std::memcpy(values.data(), bytes->data(), values.size() * sizeof(Number));
+  const std::vector<std::uint8_t> bytes = base64_decoded(text.get<std::string>()).bytes;
+  std::vector<Number> values(bytes.size() / sizeof(Number));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(Number));
   return values;
 }
 
