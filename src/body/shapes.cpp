@@ -5,6 +5,7 @@
 
 #include "base/quantile.h"
 #include "body/skin_points.h"
+#include "humanoid/skin.h"
 
 namespace ukemi {
 namespace {
@@ -206,8 +207,9 @@ Shape foot(const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
 PerSegment<std::vector<Vec3>> skin_of_segments(const Character& character, const Humanoid& humanoid,
                                                const Pose& pose, const BodyPose& segments) {
   PerSegment<std::vector<Vec3>> result;
-  for_each_skin_vertex(character, humanoid, pose, segments,
-                       [&](const SkinVertex& v) { result[index(v.segment)].push_back(v.place); });
+  for_each_skin_vertex(character, humanoid, pose, segments, [&](const SkinVertex& v) {
+    if (!is_astray(v.place.norm(), humanoid.height_m)) result[index(v.segment)].push_back(v.place);
+  });
   return result;
 }
 

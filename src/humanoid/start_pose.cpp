@@ -212,6 +212,8 @@ BodyPose body_in(const Stance& stance, const BodyPose& from) {
   return figure.to;
 }
 
+constexpr double kFarSole = 0.4;  // of the height, from the ankle: farther than any shoe
+
 /// Lowest point of the feet in the world, metres: of the skin around the foot bones, else a guess from the
 /// bones.
 double lowest_sole(const Character& character, const Humanoid& humanoid, const Pose& pose) {
@@ -225,8 +227,12 @@ double lowest_sole(const Character& character, const Humanoid& humanoid, const P
   }
   const SkinExtent extent =
       skin_extent(character, world, up_in_file, [&](int node) { return in_foot[node] != 0; });
-  if (extent.found) return humanoid.world_from_file.scale * extent.min;
   const BodyPose body = segments_of(character.skeleton, humanoid, pose);
+  const double ankle =
+      std::min(body[index(Segment::foot_l)].translation.y(), body[index(Segment::foot_r)].translation.y());
+  const double sole = humanoid.world_from_file.scale * extent.min;
+  const bool near_feet = std::abs(sole - ankle) < kFarSole * humanoid.height_m;  // else a wrong bind pose
+  if (extent.found && near_feet) return sole;
   double lowest = 1e300;
   for (int side = 0; side < 2; ++side) {
     // Ankle centre 0.039 of the height above the sole (de Leva 1996), toe joint about 0.012.
