@@ -293,7 +293,7 @@ std::size_t add_inverse_binds(Edit& edit, const std::vector<Affine>& inverse_bin
 /// those with the same joints the last one tells importers the bind pose.
 void add_bare_skins(Edit& edit, const Character& character, const Humanoid& humanoid) {
   Json skins = Json::array();
-  if (character.format == SourceFormat::bvh) {
+  if (character.format != SourceFormat::gltf && character.skins.empty()) {
     skins.push_back({{"joints", character.skeleton.order}});
     skins[0]["inverseBindMatrices"] =
         add_inverse_binds(edit, make_stick_mesh(character, humanoid).inverse_bind);

@@ -180,6 +180,13 @@ std::optional<Json> report_beside(const fs::path& folder, const fs::path& path) 
   return *json;
 }
 
+/// Its own name, also of "." and "hits/".
+std::string name_of_folder(const fs::path& folder) {
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(folder, error);
+  return (error ? folder : whole).filename().string();
+}
+
 ReviewSource source_of_files(const fs::path& folder, const fs::path& stem,
                              const std::vector<std::string>& outputs, Diagnostics& diagnostics) {
   ReviewSource source;
@@ -187,7 +194,7 @@ ReviewSource source_of_files(const fs::path& folder, const fs::path& stem,
   source.outputs = outputs;
   source.clip = clip_among(outputs);
   const fs::path parent = stem.parent_path();
-  source.character = parent.empty() ? std::string() : parent.filename().string();
+  source.character = parent.empty() ? name_of_folder(folder) : parent.filename().string();
   if (const auto report = report_beside(folder, stem.string() + ".json")) {
     source.report = stem.string() + ".json";
     source.character = fs::path(text_at(*report, {"character"})).stem().string();

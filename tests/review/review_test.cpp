@@ -214,6 +214,18 @@ TEST_F(Reviewed, APageThatWasCutShortIsMadeAnew) {
   EXPECT_FALSE(fs::exists(folder / "review/clips/half.js"));
 }
 
+TEST_F(Reviewed, ClipsOfAPlainFolderGoByItsName) {
+  fs::create_directories(folder / "hero");
+  fs::copy_file(folder / "mannequin" / "head.glb", folder / "hero" / "head.glb");
+  Diagnostics said;
+  for (const fs::path& named : {folder / "hero", folder / "hero" / ""}) {
+    const auto sources = review_sources(named, said);
+    ASSERT_TRUE(sources) << sources.error().message();
+    ASSERT_EQ(sources->reactions.size(), 1u);
+    EXPECT_EQ(sources->reactions[0].character, "hero");
+  }
+}
+
 TEST_F(Reviewed, RefusesWhatIsNoBatch) {
   write("manifest.json", "[]");
   EXPECT_NE(refusal().find("is not a JSON object"), std::string::npos);
