@@ -198,5 +198,38 @@ TEST(PublicFaults, ABindPoseOfAnotherSkeletonIsSaidAndTheHeightIsThatOfTheBones)
   EXPECT_EQ(plain.warnings(), "");
 }
 
+TEST(PublicFaults, AThumbTurnsWithAHandOfTwoBonesInOnePlace) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  character->parts.clear();
+  character->skins.clear();
+  Skeleton& skeleton = character->skeleton;
+  const int hand = skeleton.find("LeftHand");
+  for (const char* name : {"LeftFingerBase", "LThumb"}) {  // as in the CMU rigs
+    Node node;
+    node.name = name;
+    node.parent = hand;
+    skeleton.nodes.push_back(node);
+  }
+  ASSERT_TRUE(skeleton.sort());
+  const auto humanoid = map_humanoid(*character, {}, diagnostics);
+  ASSERT_TRUE(humanoid) << humanoid.error().message();
+  ASSERT_EQ(humanoid->segments[index(Segment::hand_l)].chain.size(), 2u);
+  const Pose rest = rest_pose(skeleton);
+  const BodyPose from = segments_of(skeleton, *humanoid, rest);
+  BodyPose to = from;
+  const Quat turn = exp_rotation(Vec3(0.3, 0.8, -0.4));
+  to[index(Segment::hand_l)].rotation = turn * from[index(Segment::hand_l)].rotation;
+  const auto before = world_transforms(skeleton, rest);
+  const auto after = world_transforms(skeleton, pose_skeleton(skeleton, *humanoid, rest, from, to));
+  for (const char* name : {"LeftFingerBase", "LThumb"}) {
+    const auto node = static_cast<std::size_t>(skeleton.find(name));
+    const Quat turned = rotation_part(after[node].linear() * before[node].linear().inverse());
+    EXPECT_LT(angle_between(turned, turn), 1e-6) << name;
+  }
+}
+
 }  // namespace
 }  // namespace ukemi
