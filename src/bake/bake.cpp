@@ -17,6 +17,7 @@
 #include "base/character_path.h"
 #include "base/errors.h"
 #include "base/files.h"
+#include "clip/extras.h"
 #include "clip/frames.h"
 #include "clip/root_motion.h"
 #include "export/additive.h"
@@ -31,16 +32,6 @@ namespace fs = std::filesystem;
 namespace {
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
-
-Result<std::vector<std::uint8_t>> bvh_bytes(const Character& character, const BakeSettings& settings,
-                                            const BakedClip& outcome, const Clip& clip,
-                                            Diagnostics& diagnostics) {
-  BvhOptions options;
-  if (settings.bvh_metres_per_unit) options.metres_per_unit = *settings.bvh_metres_per_unit;
-  const auto text = write_bvh(character, outcome.prepared.humanoid, clip, options, diagnostics);
-  if (!text) return text.error();
-  return bytes_of(*text);
-}
 
 bool same(const JointRange& a, const JointRange& b) {
   return a.polygon == b.polygon && a.twist_min == b.twist_min && a.twist_max == b.twist_max &&
@@ -66,8 +57,57 @@ Result<std::string> extras_of(const Character& character, const BakeSettings& se
   if (settings.additive != Additive::off) facts.additive_from = exported.clip.frames.front();
   facts.on_rest = settings.additive == Additive::rest;
   const Skeleton& skeleton = exported.with_root ? exported.with_root->skeleton : character.skeleton;
-  return animation_extras(skeleton, frames_of(outcome.prepared.actor(character)), outcome.timeline.clip.marks,
-                          facts);
+  const SegmentFrames frames = frames_of(outcome.prepared.actor(character));
+  return with_fps(animation_extras(skeleton, frames, outcome.timeline.clip.marks, facts), exported.clip.fps);
+}
+
+/// Whether the joints of a BVH source can turn in every way that their segments do.
+bool turns_freely(const BvhSource& bvh, const SegmentFrames& frames) {
+  const auto is_rotation = [](BvhChannel channel) { return channel >= BvhChannel::x_rotation; };
+  return std::all_of(frames.node.begin(), frames.node.end(), [&](int node) {
+    if (node < 0) return true;
+    const auto& channels = bvh.channels[static_cast<std::size_t>(node)];
+    return std::count_if(channels.begin(), channels.end(), is_rotation) == 3;
+  });
+}
+
+/// What is said of the clip of a BVH, whose joints have axes of their own: `first_frame` is the file with the
+/// clip's first frame alone.
+Result<std::string> bvh_extras(const Character& character, const BakeSettings& settings,
+                               const BakedClip& outcome, const Clip& clip, const std::string& first_frame) {
+  Diagnostics said;
+  const auto written = read_bvh(first_frame, "", said);
+  if (!written) return written.error();
+  auto ranges = ranges_to_tell(outcome.prepared.range);
+  if (!ranges) return ranges.error();
+  const Humanoid& humanoid = outcome.prepared.humanoid;
+  const SegmentFrames frames = frames_of(outcome.prepared.actor(character));
+  const Quat turned = character.bvh ? Quat::Identity() : humanoid.world_from_file.rotation;
+  SegmentFrames moved =
+      moved_frames(character.skeleton, frames, clip.frames.front(), turned, bvh_nodes(character, humanoid),
+                   written->skeleton, sample(written->skeleton, written->animations.front(), 0.0));
+  // Hinges of the source drop what they cannot do, rolls above all: readers have to find them anew.
+  if (character.bvh && !turns_freely(*character.bvh, frames)) moved.node.fill(-1);
+  const ClipFacts facts{std::string(name(settings.ground.root_motion)), std::nullopt, std::move(*ranges)};
+  return with_fps(animation_extras(written->skeleton, moved, outcome.timeline.clip.marks, facts), clip.fps);
+}
+
+Result<std::vector<std::uint8_t>> bvh_bytes(const Character& character, const BakeSettings& settings,
+                                            const BakedClip& outcome, const Clip& clip,
+                                            Diagnostics& diagnostics) {
+  const Humanoid& humanoid = outcome.prepared.humanoid;
+  BvhOptions options;
+  if (settings.bvh_metres_per_unit) options.metres_per_unit = *settings.bvh_metres_per_unit;
+  Diagnostics said;
+  const auto first_frame =
+      write_bvh(character, humanoid, {clip.name, clip.fps, {clip.frames.front()}, {}}, options, said);
+  if (!first_frame) return first_frame.error();
+  auto extras = bvh_extras(character, settings, outcome, clip, *first_frame);
+  if (!extras) return extras.error();
+  options.extras_json = std::move(*extras);
+  const auto text = write_bvh(character, humanoid, clip, options, diagnostics);
+  if (!text) return text.error();
+  return bytes_of(*text);
 }
 
 Result<std::vector<std::uint8_t>> gltf_bytes(const fs::path& path, const Character& character,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/file_names.h"
+#include "base/or_null.h"
 
 namespace ukemi {
 namespace {
@@ -20,15 +21,9 @@ void take(const Json& json, std::optional<double>& number) {
   if (!json.is_null()) number = json.get<double>();
 }
 
-template <typename Number>
-Json number_or_null(const Number& number) {
-  return number;
-}
-Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
-
 Json to_json(const ReactionFigures& figures) {
   Json json;
-  for_each_figure(figures, [&](const char* key, const auto& figure) { json[key] = number_or_null(figure); });
+  for_each_figure(figures, [&](const char* key, const auto& figure) { json[key] = or_null<Json>(figure); });
   return json;
 }
 

@@ -8,6 +8,7 @@
 
 #include "bake/library.h"
 #include "bake/response.h"
+#include "base/or_null.h"
 #include "base/version.h"
 #include "clip/frames.h"
 #include "clip/smooth.h"
@@ -24,11 +25,6 @@ using Json = nlohmann::ordered_json;
 // and dancing at 30 to 120 Hz, low-passed at 12 Hz. No clip of them holds a blow.
 constexpr double kRealJerk_deg_s3 = 2.11e6;
 constexpr double kRealCutOff_hz = 12.0;
-
-template <typename T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Json numbers(const Quat& q) { return {q.x(), q.y(), q.z(), q.w()}; }
@@ -55,13 +51,13 @@ Json settings_json(const BakeSettings& settings, const BakedClip& outcome) {
   json["until_rest"] = settings.until_rest;
   json["hold_s"] = settings.until_rest ? Json(settings.hold_s) : Json(nullptr);
   json["lead_s"] = outcome.timeline.impact_s;
-  json["get_up_s"] = or_null(settings.get_up_s);
-  json["recover_s"] = or_null(settings.recover_s);
+  json["get_up_s"] = or_null<Json>(settings.get_up_s);
+  json["recover_s"] = or_null<Json>(settings.recover_s);
   json["recover_to"] =
       settings.recover_s ? Json(settings.recover_to == RecoverTo::clip ? "clip" : "rest") : Json(nullptr);
   json["align"] = settings.ground.align;
   json["extra_bones"] = settings.extra_bones_play ? "clip" : "hold";
-  json["smooth_hz"] = or_null(settings.smooth_hz);
+  json["smooth_hz"] = or_null<Json>(settings.smooth_hz);
   json["keys"] = settings.keys.enabled ? "reduced" : "all";
   json["key_error_mm"] = settings.keys.enabled ? Json(settings.keys.tolerance_m * 1000.0) : Json(nullptr);
   return json;
@@ -110,7 +106,7 @@ Json impact_json(const Character& character, const BakeSettings& settings, const
   const Scene& scene = outcome.prepared.scene;
   Json json;
   json["segment"] = name(scene.target);
-  json["preset"] = or_null(preset_in_use(settings));
+  json["preset"] = or_null<Json>(preset_in_use(settings));
   json["time_s"] = outcome.timeline.impact_s;
   json["momentum_n_s"] = outcome.figures.momentum_n_s;
   const std::optional<double>& contact_s = outcome.figures.first_ground_contact_s;
@@ -167,7 +163,7 @@ Json steps_json(const std::vector<StepTaken>& steps) {
   for (const StepTaken& step : steps)
     json.push_back({{"foot", step.foot == Segment::foot_l ? "l" : "r"},
                     {"lift_s", step.lift_s},
-                    {"contact_s", or_null(step.contact_s)},
+                    {"contact_s", or_null<Json>(step.contact_s)},
                     {"length_m", step.length_m}});
   return json;
 }
@@ -181,8 +177,8 @@ Json response_json(const BakedClip& outcome) {
   json["outcome"] = name(response.outcome);
   json["end_pose"] = name(response.end_pose);
   json["steps"] = steps_json(response.steps);
-  json["fall_begins_s"] = or_null(response.fall_begins_s);
-  json["knocked_out_s"] = or_null(response.knocked_out_s);
+  json["fall_begins_s"] = or_null<Json>(response.fall_begins_s);
+  json["knocked_out_s"] = or_null<Json>(response.knocked_out_s);
   json["first_contact"] = first_contact_json(response.contacts.first);
   json["head_contact"] = touch_json(response.contacts.head);
   json["pelvis_contact"] = touch_json(response.contacts.pelvis);
@@ -231,7 +227,7 @@ Json simulation_json(const SimulationFigures& figures, const SkinOnFloor& skin) 
   json["energy_gain_max_j"] = figures.energy_gain_max_j;
   json["floor_penetration_max_m"] = figures.floor_penetration_max_m;
   json["self_penetration_max_m"] = figures.self_penetration_max_m;
-  json["rest_time_s"] = or_null(figures.rest_time_s);
+  json["rest_time_s"] = or_null<Json>(figures.rest_time_s);
   json["jitter_rad_s"] = figures.jitter_rad_s;
   json["hash"] = figures.hash;
   json["angular_momentum_mean_kg_m2_s"] = figures.angular_momentum_mean_kg_m2_s;

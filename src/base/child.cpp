@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,6 +19,7 @@
 
 #include "base/descriptors.h"
 #include "base/errors.h"
+#include "base/process.h"
 
 namespace ukemi {
 namespace {
@@ -35,17 +35,6 @@ constexpr int kDone = 0;
 constexpr int kOutOfMemory = 1;
 constexpr int kFailed = 2;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;  // reserves terabytes of addresses, and reports to stderr
-#else
-constexpr bool kSanitized = false;
-#endif
-
-void limit(__rlimit_resource resource, rlim_t value) {
-  const rlimit both{value, value};
-  setrlimit(resource, &both);
-}
-
 /// SIGXCPU, which tells what happened, comes at the soft limit, SIGKILL at the hard one.
 void limit_processor_time(double seconds) {
   const auto soft = static_cast<rlim_t>(std::ceil(seconds));
@@ -60,12 +49,12 @@ rlim_t mapped_bytes() {
   return static_cast<rlim_t>(pages) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
 }
 
-void confine(const ChildLimits& limits) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_FSIZE, 0);
+void confine(const ChildLimits& limits, pid_t parent) {
+  if (!die_with(parent)) _exit(kFailed);
+  leave_no_core();
+  limit_file_size(0);
   limit_processor_time(limits.processor_s);
-  if (!kSanitized) limit(RLIMIT_AS, mapped_bytes() + limits.memory_bytes);
+  limit_addresses(mapped_bytes() + limits.memory_bytes);
   for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM, SIGPIPE})
     signal(number, SIG_DFL);
   const int nowhere = kSanitized ? -1 : open("/dev/null", O_WRONLY);
@@ -73,10 +62,10 @@ void confine(const ChildLimits& limits) {
 }
 
 [[noreturn]] void work_in_child(const std::function<std::vector<std::uint8_t>()>& work,
-                                const ChildLimits& limits, int out) {
+                                const ChildLimits& limits, pid_t parent, int out) {
   int status = kFailed;
   try {
-    confine(limits);
+    confine(limits, parent);
     status = write_all(out, work()) ? kDone : kFailed;
   } catch (const std::bad_alloc&) {
     status = kOutOfMemory;
@@ -90,7 +79,6 @@ enum class Reading { done, too_long, too_much };
 /// Everything that comes through the pipe until it is closed.
 Reading read_all(int in, const ChildLimits& limits, std::vector<std::uint8_t>& bytes) {
   const auto deadline = Clock::now() + std::chrono::duration<double>(limits.wall_s);
-  constexpr std::size_t kBlock = 1 << 20;
   for (;;) {
     const double left_ms = std::chrono::duration<double, std::milli>(deadline - Clock::now()).count();
     if (left_ms <= 0.0) return Reading::too_long;
@@ -98,12 +86,7 @@ Reading read_all(int in, const ChildLimits& limits, std::vector<std::uint8_t>& b
     const int ready = poll(&waiting, 1, static_cast<int>(std::ceil(std::min(left_ms, 1e6))));
     if (ready < 0 && errno != EINTR) return Reading::done;
     if (ready <= 0) continue;
-    const std::size_t before = bytes.size();
-    bytes.resize(before + kBlock);
-    const ssize_t n = read(in, bytes.data() + before, kBlock);
-    bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return Reading::done;
+    if (!read_some(in, bytes)) return Reading::done;
     if (bytes.size() > limits.result_bytes) return Reading::too_much;
   }
 }
@@ -132,36 +115,25 @@ std::optional<Error> failure(int status, const ChildLimits& limits, const std::f
 }
 
 Error no_process(const char* what) {
-  return {ErrorKind::internal,
-          "",
-          0,
-          0,
-          "",
-          fmt::format("cannot make a process: {}", what),
-          "close other programs and try again"};
+  return internal_error(fmt::format("cannot make a process: {}", what), "close other programs and try again");
 }
 
 }  // namespace
 
 Result<std::vector<std::uint8_t>> run_in_child(const std::function<std::vector<std::uint8_t>()>& work,
                                                const ChildLimits& limits, const std::filesystem::path& path) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return no_process(std::strerror(errno));
+  auto pipe = make_pipe();
+  if (!pipe) return no_process(std::strerror(errno));
+  const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child < 0) {
-    const Error error = no_process(std::strerror(errno));
-    close(ends[0]), close(ends[1]);
-    return error;
-  }
-  if (child == 0) work_in_child(work, limits, ends[1]);
-  close(ends[1]);
+  if (child < 0) return no_process(std::strerror(errno));
+  if (child == 0) work_in_child(work, limits, parent, pipe->write.get());
+  pipe->write.reset();
   std::vector<std::uint8_t> bytes;
-  const Reading reading = read_all(ends[0], limits, bytes);
-  close(ends[0]);
+  const Reading reading = read_all(pipe->read.get(), limits, bytes);
+  pipe->read.reset();
   if (reading != Reading::done) kill(child, SIGKILL);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = wait_for_end(child);
   if (reading == Reading::too_long) return too_long(path, "waiting", limits.wall_s);
   if (reading == Reading::too_much)
     return input_error(path, fmt::format("makes more than {} MiB of data", limits.result_bytes >> 20),

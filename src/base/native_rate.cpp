@@ -1,8 +1,9 @@
 #include "base/native_rate.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "base/quantile.h"
 
 namespace ukemi {
 
@@ -14,9 +15,8 @@ double native_rate(const Animation& animation) {
     for (std::size_t i = 1; i < track.times.size(); ++i)
       if (track.times[i] > track.times[i - 1]) spacings.push_back(track.times[i] - track.times[i - 1]);
   if (spacings.empty()) return 0.0;
-  const auto least = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / kStray);
-  std::nth_element(spacings.begin(), least, spacings.end());
-  const double rate = 1.0 / *least;
+  const std::size_t least = spacings.size() / kStray;
+  const double rate = 1.0 / ranked(std::move(spacings), least);
   const double whole = std::round(rate);
   return std::abs(rate - whole) < 1e-3 * rate ? whole : rate;
 }

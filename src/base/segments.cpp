@@ -1,5 +1,6 @@
 #include "base/segments.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -34,7 +35,9 @@ constexpr std::pair<std::string_view, Segment> kAliases[] = {
     {"forearm", Segment::forearm_l}, {"hand", Segment::hand_l},         {"upperleg", Segment::thigh_l},
     {"upleg", Segment::thigh_l},     {"thigh", Segment::thigh_l},       {"lowerleg", Segment::shank_l},
     {"calf", Segment::shank_l},      {"shin", Segment::shank_l},        {"shank", Segment::shank_l},
-    {"foot", Segment::foot_l}};
+    {"foot", Segment::foot_l},       {"toes", Segment::foot_l},         {"toe", Segment::foot_l},
+    {"ball", Segment::foot_l},       {"neck", Segment::head},           {"face", Segment::head},
+    {"jaw", Segment::head},          {"gut", Segment::abdomen}};
 
 /// Lower case letters alone: "Left Upper-Leg" -> "leftupperleg".
 std::string letters_of(std::string_view text) {
@@ -62,8 +65,31 @@ std::optional<bool> take_side_is_left(std::string_view text, std::string& letter
   return std::nullopt;
 }
 
-std::optional<Segment> segment_of_alias(std::string_view text) {
+/// "spine_03" -> 3; 0 where there is none.
+int number_in(std::string_view text) {
+  int number = 0;
+  for (const char c : text)
+    if (c >= '0' && c <= '9') number = std::min(10 * number + (c - '0'), 99);
+  return number;
+}
+
+/// "J_Bip_L_UpperArm", "mixamorig:Spine" and the like without what all bones of a rig begin with.
+std::string_view without_prefix(std::string_view text) {
+  for (const std::string_view prefix :
+       {"J_Bip_", "mixamorig:", "mixamorig_", "mixamorig", "bip01 ", "bip001 "})
+    if (text.starts_with(prefix) && text.size() > prefix.size()) {
+      text.remove_prefix(prefix.size());
+      return text.starts_with("C_") ? text.substr(2) : text;
+    }
+  return text;
+}
+
+std::optional<Segment> segment_of_alias(std::string_view written) {
+  const std::string_view text = without_prefix(written);
   std::string letters = letters_of(text);
+  for (int i = 0; i < kSegmentCount; ++i)
+    if (name(segment_at(i)) == letters) return segment_at(i);
+  if (letters == "spine" && number_in(text) >= 3) return Segment::chest;  // spine_01 to 05 of Unreal
   const auto left = take_side_is_left(text, letters);
   for (const auto& [alias, segment] : kAliases) {
     const bool has_sides = mirrored_segment(index(segment)) != index(segment);

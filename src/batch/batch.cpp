@@ -202,7 +202,7 @@ class Batch {
       record.fix = "bake it alone to see more: ukemi bake";
     }
     if (record.cannot_write && !result_.cannot_write)
-      result_.cannot_write = Error{ErrorKind::output, "", 0, 0, "", record.error, record.fix};
+      result_.cannot_write = output_error({}, record.error, record.fix);
     if (!record.cannot_write)
       if (const Status status = journal_.add(record); !status && !result_.cannot_write)
         result_.cannot_write = status.error();

@@ -1,5 +1,6 @@
 #include "batch/manifest.h"
 #include "base/csv.h"
+#include "base/or_null.h"
 #include "base/version.h"
 #include "prepare/impact.h"
 
@@ -19,12 +20,6 @@ std::optional<std::string> written(const Reaction& reaction, const std::string& 
   return value == reaction.written.end() ? std::nullopt : std::optional(value->second);
 }
 
-template <typename Number>
-Json number_or_null(const Number& number) {
-  return number;
-}
-Json number_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
-Json text_or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
 Json path_or_null(const fs::path& path, bool made) {
   return made && !path.empty() ? Json(path.generic_string()) : Json(nullptr);
 }
@@ -43,12 +38,12 @@ Json settings_json(const Reaction& reaction) {
   const BakeSettings& settings = reaction.settings;
   Json json;
   json["hit"] = name(settings.hit);
-  json["from"] = text_or_null(written(reaction, "from"));
+  json["from"] = or_null<Json>(written(reaction, "from"));
   json["preset"] = settings.preset;
   json["scene"] = settings.scene ? Json(name(*settings.scene)) : Json(nullptr);
-  json["pose"] = text_or_null(settings.pose);
-  json["clip"] = text_or_null(settings.clip);
-  json["at_s"] = number_or_null(settings.at_s);
+  json["pose"] = or_null<Json>(settings.pose);
+  json["clip"] = or_null<Json>(settings.clip);
+  json["at_s"] = or_null<Json>(settings.at_s);
   json["variation"] = reaction.variation;
   json["seed"] = reaction.seed;
   json["varied"] = varied_json(reaction);
@@ -58,7 +53,7 @@ Json settings_json(const Reaction& reaction) {
 Json figures_json(const ReactionFigures& figures) {
   Json json;
   for_each_figure(figures, [&](std::string_view key, const auto& figure) {
-    json[std::string(key)] = number_or_null(figure);
+    json[std::string(key)] = or_null<Json>(figure);
     if (key == "rest_time_s") json["settled"] = figures.rest_time_s.has_value();
   });
   return json;
@@ -80,7 +75,7 @@ Json entry_json(const Recipe& recipe, const ManifestEntry& entry) {
   json["settings"] = settings_json(reaction);
   json["figures"] = made ? figures_json(*entry.record->figures) : Json(nullptr);
   json["warnings"] = made ? Json(entry.record->warnings) : Json(Json::array());
-  json["error"] = entry.error.empty() ? Json(nullptr) : Json(entry.error);
+  json["error"] = text_or_null<Json>(entry.error);
   json["digest"] = entry.digest;
   return json;
 }

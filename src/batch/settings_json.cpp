@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bake/bake.h"
+#include "base/or_null.h"
 #include "base/segments.h"
 #include "base/version.h"
 #include "prepare/impact.h"
@@ -103,8 +104,6 @@ Result<std::vector<std::string>> choices_of(const Setting& setting) {
   return choices;
 }
 
-Json text_or_null(std::string_view text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 }  // namespace
 
 Result<std::string> settings_json() {
@@ -117,11 +116,11 @@ Result<std::string> settings_json() {
                                 {"group", setting.group},
                                 {"type", type_of(setting)},
                                 {"default", default_of(setting)},
-                                {"unset", text_or_null(setting.unset)},
+                                {"unset", text_or_null<Json>(setting.unset)},
                                 {"range", range_of(setting)},
                                 {"choices", choices->empty() ? Json(nullptr) : Json(*choices)},
                                 {"unit", unit_of(setting)},
-                                {"value", text_or_null(setting.value)},
+                                {"value", text_or_null<Json>(setting.value)},
                                 {"help", setting.help}});
   }
   return json.dump(2) + "\n";

@@ -4,13 +4,10 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -22,6 +19,8 @@
 #include <string_view>
 
 #include "base/descriptors.h"
+#include "base/errors.h"
+#include "base/process.h"
 
 namespace ukemi {
 namespace {
@@ -35,66 +34,12 @@ constexpr auto kPatience = std::chrono::milliseconds(100);
 constexpr double kGrace_s = 0.5;          // for jobs under way when the batch is stopped
 constexpr std::size_t kComplaint = 2000;  // bytes kept of what a worker says on stderr
 
-/// A file descriptor that is closed at the end.
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() { reset(); }
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    reset();
-    fd_ = std::exchange(other.fd_, -1);
-    return *this;
-  }
-  int get() const { return fd_; }
-  void reset() {
-    if (fd_ >= 0) close(fd_);
-    fd_ = -1;
-  }
-
- private:
-  int fd_ = -1;
-};
-
-struct Pipe {
-  Descriptor read, write;
-};
-
-std::optional<Pipe> make_pipe() {
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) return std::nullopt;
-  return Pipe{Descriptor(ends[0]), Descriptor(ends[1])};
-}
-
-/// Appends what can be read at once; false at the end of the stream.
-bool read_some(int fd, std::string& text) {
-  std::array<char, 65536> buffer{};
-  const ssize_t n = ::read(fd, buffer.data(), buffer.size());
-  if (n < 0) return errno == EINTR || errno == EAGAIN;
-  text.append(buffer.data(), static_cast<std::size_t>(n));
-  return n > 0;
-}
-
 std::optional<std::string> take_line(std::string& text) {
   const auto end = text.find('\n');
   if (end == text.npos) return std::nullopt;
   std::string line = text.substr(0, end);
   text.erase(0, end + 1);
   return line;
-}
-
-void limit(__rlimit_resource resource, rlim_t value) {
-  const rlimit both{value, value};
-  setrlimit(resource, &both);
-}
-
-void limit_memory(std::size_t bytes) {
-#if defined(__SANITIZE_ADDRESS__)
-  static_cast<void>(bytes);  // its shadow alone takes terabytes of address space
-#else
-  if (bytes > 0) limit(RLIMIT_AS, bytes);
-#endif
 }
 
 std::string answer_or_exit(const Work& work, const std::string& job) {
@@ -111,15 +56,14 @@ std::string answer_or_exit(const Work& work, const std::string& job) {
 /// A worker's life: a job per line of `in` until it ends.
 [[noreturn]] void serve(int in, int out, int err, pid_t parent, const WorkerSettings& settings,
                         const Work& work) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(0);
+  if (!die_with(parent)) _exit(0);
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP}) signal(signal_number, SIG_IGN);
   const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
   dup2(nothing, STDIN_FILENO);
   dup2(nothing, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
-  limit(RLIMIT_CORE, 0);
-  limit_memory(settings.memory_bytes);
+  leave_no_core();
+  if (settings.memory_bytes > 0) limit_addresses(settings.memory_bytes);
   std::string input;
   while (true) {
     while (const auto job = take_line(input))
@@ -165,7 +109,7 @@ class Pool {
   }
   ~Pool() {
     for (const auto& worker : workers_) kill(worker->pid, SIGKILL);
-    for (const auto& worker : workers_) wait_for(*worker);
+    for (const auto& worker : workers_) wait_for_end(worker->pid);
   }
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
@@ -196,13 +140,8 @@ class Pool {
       Worker* idle = idle_worker();
       if (!idle && static_cast<int>(workers_.size()) < settings_.workers) idle = start_worker();
       if (!idle && workers_.empty())
-        return Error{ErrorKind::internal,
-                     "",
-                     0,
-                     0,
-                     "",
-                     fmt::format("cannot start a worker: {}", std::strerror(errno)),
-                     "end other programs, or raise the limit of processes"};
+        return internal_error(fmt::format("cannot start a worker: {}", std::strerror(errno)),
+                              "end other programs, or raise the limit of processes");
       if (!idle) break;
       give(*idle);
     }
@@ -285,7 +224,7 @@ class Pool {
   /// The job of a worker that died is tried once more.
   void bury(Worker& worker) {
     if (worker.complaints.get() >= 0) take_complaint(worker);
-    const int status = wait_for(worker);
+    const int status = wait_for_end(worker.pid);
     if (worker.job && tries_[*worker.job] < 2)
       waiting_.push_back(*worker.job);
     else if (worker.job)
@@ -299,14 +238,6 @@ class Pool {
       worker->late = true;
       kill(worker->pid, SIGKILL);  // its answers end then
     }
-  }
-
-  /// Its exit status; nothing is left of it.
-  static int wait_for(const Worker& worker) {
-    int status = 0;
-    while (waitpid(worker.pid, &status, 0) < 0 && errno == EINTR) {
-    }
-    return status;
   }
 
   const std::vector<std::string>& jobs_;

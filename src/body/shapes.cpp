@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantile.h"
 #include "body/skin_points.h"
+#include "humanoid/skin.h"
 
 namespace ukemi {
 namespace {
@@ -62,10 +64,9 @@ bool ends_at_joint(Segment s) {
   return s == Segment::shank_l || s == Segment::shank_r || s == Segment::forearm_l || s == Segment::forearm_r;
 }
 
-double percentile(std::vector<double> values, double share) {
-  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), values.begin() + k, values.end());
-  return values[static_cast<std::size_t>(k)];
+double value_at_share(std::vector<double> values, double share) {
+  const double rank = share * static_cast<double>(values.size() - 1) + 0.5;
+  return ranked(std::move(values), static_cast<std::size_t>(rank));
 }
 
 struct Extent {
@@ -78,7 +79,7 @@ Extent extent(const std::vector<Vec3>& points, int axis, double trim) {
   std::vector<double> values;
   values.reserve(points.size());
   for (const Vec3& p : points) values.push_back(p[axis]);
-  return {percentile(values, trim), percentile(values, 1.0 - trim)};
+  return {value_at_share(values, trim), value_at_share(values, 1.0 - trim)};
 }
 
 Shape capsule_between(const Vec3& from, const Vec3& to, double radius) {
@@ -109,7 +110,7 @@ LimbFit fit_limb(const Vec3& end, const std::vector<Vec3>& skin, double fallback
   for (int axis = 0; axis < 3; ++axis) fit.offset[axis] = extent(aside, axis, 0.05).middle();
   std::vector<double> distances;
   for (const Vec3& p : aside) distances.push_back((p - fit.offset).norm());
-  fit.radius = percentile(std::move(distances), kInside);
+  fit.radius = value_at_share(std::move(distances), kInside);
   return fit;
 }
 
@@ -127,7 +128,7 @@ Shape limb(Segment segment, const Vec3& end, double height_m, const std::vector<
     reach *= 1.9;  // fingertip: the middle finger's base lies about half-way
     std::vector<double> reaches;
     for (const Vec3& p : skin) reaches.push_back(p.dot(along));
-    if (reaches.size() >= kFewestVertices) reach = percentile(std::move(reaches), 0.98);
+    if (reaches.size() >= kFewestVertices) reach = value_at_share(std::move(reaches), 0.98);
   }
   // The caps of shank, forearm and hand end at ankle, wrist and fingertip: the heel is nearer to the ankle
   // than a calf is thick.
@@ -206,8 +207,9 @@ Shape foot(const Vec3& end, double height_m, const std::vector<Vec3>& skin) {
 PerSegment<std::vector<Vec3>> skin_of_segments(const Character& character, const Humanoid& humanoid,
                                                const Pose& pose, const BodyPose& segments) {
   PerSegment<std::vector<Vec3>> result;
-  for_each_skin_vertex(character, humanoid, pose, segments,
-                       [&](const SkinVertex& v) { result[index(v.segment)].push_back(v.place); });
+  for_each_skin_vertex(character, humanoid, pose, segments, [&](const SkinVertex& v) {
+    if (!is_astray(v.place.norm(), humanoid.height_m)) result[index(v.segment)].push_back(v.place);
+  });
   return result;
 }
 

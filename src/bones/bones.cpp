@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "base/errors.h"
 #include "base/nearest.h"
@@ -10,6 +11,8 @@
 
 namespace ukemi {
 namespace {
+
+using Json = nlohmann::json;
 
 struct Candidate {
   int node = -1;  // -1: the limb has no such bone
@@ -326,6 +329,21 @@ void apply_vrm(const Character& character, Bones& bones) {
   }
 }
 
+/// What the bake that wrote a BVH took for the segments: its hierarchy has no way to say that the armature
+/// was mirrored.
+void apply_bake(const Character& character, Bones& bones) {
+  if (!character.bvh || character.animations.empty()) return;
+  const Json json = Json::parse(character.animations.front().extras_json, nullptr, false);
+  const Json::json_pointer place("/ukemi/segments");
+  if (!json.is_object() || !json.contains(place) || !json[place].is_object()) return;
+  for (const auto& [label, segment] : json[place].items()) {
+    const auto named = segment_named(label);
+    if (!named || !segment.is_object() || !segment.contains("node") || !segment["node"].is_string()) continue;
+    const int node = character.skeleton.find(segment["node"].get<std::string>());
+    if (node >= 0) bones.set(*named, node, "bake");
+  }
+}
+
 /// Later sources fill what earlier ones left open.
 void fill(Bones& bones, const Bones& more) {
   for (int s = 0; s < kSegmentCount; ++s)
@@ -522,6 +540,7 @@ Result<Bones> find_bones(const Character& character, const HumanoidOptions& opti
   if (Status status = apply_user_map(character, options, given); !status) return status.error();
   Bones vrm;
   apply_vrm(character, vrm);
+  apply_bake(character, vrm);
   if (root < 0) fill(given, vrm);
   Bones bones;
   for (const bool second_round : {false, true}) {

@@ -11,6 +11,7 @@
 #include "base/animation.h"
 #include "base/character_path.h"
 #include "base/native_rate.h"
+#include "base/quantile.h"
 #include "check/inspect.h"
 #include "load/load.h"
 
@@ -34,9 +35,10 @@ double duration_of(const Pool& pool) {
   return seconds;
 }
 
-Vec3 percentiles(const Pool& pool) {
+Vec3 upper_speeds(const Pool& pool) {
   if (duration_of(pool) < kLeast_s) return Vec3::Zero();
-  return {percentile(pool[0], kShare), percentile(pool[1], kShare), percentile(pool[2], kShare)};
+  return {quantile_of_time(pool[0], kShare), quantile_of_time(pool[1], kShare),
+          quantile_of_time(pool[2], kShare)};
 }
 
 /// The joint that stands for both sides.
@@ -77,7 +79,7 @@ void Measurement::add_walk(const JointSpeeds& clip) {
   pool_frames(clip, Activity::walking, walking);
   for (int j = 0; j < kJointCount; ++j) {
     walking_s_[j] += duration_of(walking[j]);
-    walking_p99_[j] = walking_p99_[j].cwiseMax(percentiles(walking[j]));
+    walking_p99_[j] = walking_p99_[j].cwiseMax(upper_speeds(walking[j]));
   }
 }
 
@@ -104,7 +106,7 @@ void Measurement::report(Calibration& calibration) const {
     const int from = index(pooled(joint_at(j)));
     calibration.standing_s[j] = duration_of(standing_[from]);
     calibration.walking_s[j] = walking_s_[from];
-    calibration.standing_p99[j] = percentiles(standing_[from]);
+    calibration.standing_p99[j] = upper_speeds(standing_[from]);
     calibration.walking_p99[j] = walking_p99_[from];
   }
 }

@@ -11,6 +11,7 @@
 #include "base/character_path.h"
 #include "base/errors.h"
 #include "base/native_rate.h"
+#include "base/or_null.h"
 #include "clip/frames.h"
 #include "clip/names.h"
 #include "judge/judge.h"
@@ -79,13 +80,11 @@ JudgedClip judged(const Character& character, const Humanoid& humanoid, std::siz
           motion.mass_kg, judge(motion, settings.judge)};
 }
 
-Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
 Json criterion_json(const Criterion& criterion) {
   Json values = Json::object(), bands = Json::object();
   for (const Clause& clause : criterion.clauses) {
     const std::string name(clause.name);
-    values[name] = or_null(clause.value);
+    values[name] = or_null<Json>(clause.value);
     const bool open = std::isinf(clause.band.high);
     bands[name] = {clause.band.low, open ? Json(nullptr) : Json(clause.band.high)};
   }
@@ -120,10 +119,10 @@ Json events_json(const Judgement& judgement) {
   json["head_contact"] = fall ? contact_json(fall->head) : Json(nullptr);
   json["first_hand_contact"] = fall ? contact_json(fall->hand) : Json(nullptr);
   json["first_knee_contact"] = fall ? contact_json(fall->knee) : Json(nullptr);
-  json["rest_s"] = fall ? or_null(fall->rest_s) : Json(nullptr);
+  json["rest_s"] = fall ? or_null<Json>(fall->rest_s) : Json(nullptr);
   json["get_up"] = nullptr;
   if (const auto& get_up = judgement.get_up)
-    json["get_up"] = {{"begins_s", get_up->begins_s}, {"stands_s", or_null(get_up->stands_s)}};
+    json["get_up"] = {{"begins_s", get_up->begins_s}, {"stands_s", or_null<Json>(get_up->stands_s)}};
   return json;
 }
 

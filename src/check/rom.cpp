@@ -354,13 +354,9 @@ Result<Rom> rom_of(const RomSettings& settings, Diagnostics& diagnostics) {
     if (!check) return check.error();
     rom.check = std::move(*check);
     if (settings.joint && rom.check->paths.joints[index(rom.joints.front())].charts.empty())
-      return Error{ErrorKind::input,
-                   *settings.check,
-                   0,
-                   0,
-                   *settings.joint,
-                   "the character does not move this joint",
-                   "choose another joint, or --map its segment"};
+      return error_about(*settings.joint,
+                         input_error(*settings.check, "the character does not move this joint",
+                                     "choose another joint, or --map its segment"));
   }
   if (settings.swing) {
     auto swings = swings_of(rom.range.joints[index(rom.joints.front())]);

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/files.h"
 #include "batch/batch.h"
+#include "batch/input_faults.h"
 #include "batch/manifest.h"
 #include "cli/batch_progress.h"
 #include "cli/commands.h"
@@ -67,7 +70,8 @@ void declare(Options& options, BatchRequest& request) {
   options.flag("--resume", settings.resume,
                "keep what the folder has of this recipe; bake what is missing or has other inputs");
   options.flag("--force", settings.force, "bake everything again");
-  options.flag("--dry-run", request.dry_run, "list what would be baked and how long it would take");
+  options.flag("--dry-run", request.dry_run,
+               "list what would be baked, how long it would take, and what is wrong with the characters");
   options.custom(
       "--shard", "I/N", [&settings](const std::string& text) { return take_shard(text, settings.shard); },
       "only part I of N; the parts may share a folder");
@@ -165,6 +169,13 @@ Result<std::string> dry_run_text(const BatchPlan& plan, const BatchSettings& set
   return text + "\n";
 }
 
+void print_fault(const InputFault& fault) {
+  Error error = fault.error;
+  error.what += fmt::format(" (stops {} reaction{} of '{}')", fault.reactions,
+                            fault.reactions == 1 ? "" : "s", fault.character);
+  print_error(error);
+}
+
 std::size_t count(const BatchResult& result, ReactionStatus status) {
   std::size_t sum = 0;
   for (const ManifestEntry& entry : result.entries) sum += entry.status == status ? 1 : 0;
@@ -177,11 +188,21 @@ std::string summary(const BatchRequest& request, const BatchPlan& plan, const Ba
   if (result.kept > 0) text += fmt::format(" ({} from before)", result.kept);
   text += fmt::format(", {} rejected, {} failed\n", count(result, ReactionStatus::rejected),
                       count(result, ReactionStatus::failed));
+  std::map<std::pair<std::size_t, std::string>, std::size_t> alike;  // of a character and an error
   for (const ManifestEntry& entry : result.entries)
-    if (entry.status != ReactionStatus::done)
-      text += fmt::format("{} {}/{}: {}\n", name(entry.status),
-                          plan.recipe.characters[entry.reaction->character].name, entry.reaction->name,
-                          entry.error);
+    if (entry.status == ReactionStatus::failed) ++alike[{entry.reaction->character, entry.error}];
+  for (const ManifestEntry& entry : result.entries) {
+    if (entry.status == ReactionStatus::done) continue;
+    std::size_t more = 0;
+    if (entry.status == ReactionStatus::failed) {
+      const std::size_t left = std::exchange(alike[{entry.reaction->character, entry.error}], 0);
+      if (left == 0) continue;
+      more = left - 1;
+    }
+    text += fmt::format("{} {}/{}{}: {}\n", name(entry.status),
+                        plan.recipe.characters[entry.reaction->character].name, entry.reaction->name,
+                        more > 0 ? fmt::format(" and {} more of this character", more) : "", entry.error);
+  }
   return text;
 }
 
@@ -251,7 +272,10 @@ int batch_command(const Arguments& arguments) {
   if (!plan) return print_error(plan.error());
   if (!request.dry_run) return run_planned(request, *plan);
   const auto text = dry_run_text(*plan, request.settings);
-  return text ? print_result(*text, 0) : print_error(text.error());
+  if (!text) return print_error(text.error());
+  const std::vector<InputFault> faults = input_faults(*plan);
+  for (const InputFault& fault : faults) print_fault(fault);
+  return print_result(*text, faults.empty() ? 0 : 1);
 }
 
 }  // namespace ukemi

@@ -74,7 +74,9 @@ void BatchProgressView::say(const ReactionRecord& record, const BatchProgress& p
         record.figures->rest_time_s ? fmt::format("at rest after {:.2f} s", *record.figures->rest_time_s)
                                     : std::string("not at rest"));
   else
-    line += ": failed: " + record.error;
+    line += told_.emplace(record.character, record.error).second
+                ? ": failed: " + record.error
+                : std::string(": failed for the same reason");
   if (style_ == Style::bar) line = "\r\033[K" + line;
   std::fputs((line + "\n").c_str(), stderr);
   drawn_.clear();

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "batch/batch.h"
 
@@ -28,6 +30,7 @@ class BatchProgressView {
   bool colours_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   BatchProgress shown_;
+  std::set<std::pair<std::string, std::string>> told_;  // characters and their errors
   std::string drawn_;
 };
 

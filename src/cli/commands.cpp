@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 
+#include "base/errors.h"
 #include "base/nearest.h"
 #include "base/version.h"
 #include "cli/console.h"
@@ -59,9 +60,7 @@ std::string overview() {
          "example: ukemi bake mannequin --hit chest --from front -o hit.glb -o hit.bvh --sheet hit.png\n";
 }
 
-int refuse(const std::string& what, const std::string& fix) {
-  return print_error({ErrorKind::usage, "", 0, 0, "", what, fix});
-}
+int refuse(const std::string& what, const std::string& fix) { return print_error(usage_error(what, fix)); }
 
 }  // namespace
 

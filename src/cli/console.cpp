@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "base/errors.h"
+
 namespace ukemi {
 namespace {
 
@@ -44,9 +46,8 @@ int print_json(const std::string& json, int status) {
   const bool written =
       std::fwrite(json.data(), 1, json.size(), stdout) == json.size() && std::fflush(stdout) == 0;
   if (written || errno == EPIPE || errno == EBADF) return status;  // nobody reads it
-  return print_error({ErrorKind::output, "", 0, 0, "",
-                      std::string("cannot write to stdout: ") + std::strerror(errno),
-                      "choose another place for the output"});
+  return print_error(output_error({}, std::string("cannot write to stdout: ") + std::strerror(errno),
+                                  "choose another place for the output"));
 }
 
 }  // namespace ukemi

@@ -1,5 +1,6 @@
 #include "clip/frames.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -111,6 +112,24 @@ PerSegment<Quat> rotations_of(const Skeleton& skeleton, const SegmentFrames& fra
         rotation_part(world_from_node[frames.node[i]].linear()) * frames.segment_from_node[i].conjugate();
   }
   return rotations;
+}
+
+SegmentFrames moved_frames(const Skeleton& skeleton, const SegmentFrames& frames, const Pose& pose,
+                           const Quat& second_from_first, const std::vector<int>& nodes,
+                           const Skeleton& second, const Pose& second_pose) {
+  const PerSegment<Quat> rotations = rotations_of(skeleton, frames, pose);
+  const std::vector<Affine> world = world_transforms(second, second_pose);
+  SegmentFrames moved;
+  for (int i = 0; i < kSegmentCount; ++i) {
+    const auto found = std::find(nodes.begin(), nodes.end(), frames.node[i]);
+    moved.node[i] = found == nodes.end() ? -1 : static_cast<int>(found - nodes.begin());
+    moved.segment_from_node[i] = Quat::Identity();
+    if (moved.node[i] < 0) continue;
+    const Quat world_from_segment = second_from_first * rotations[i];
+    moved.segment_from_node[i] = world_from_segment.conjugate() *
+                                 rotation_part(world[static_cast<std::size_t>(moved.node[i])].linear());
+  }
+  return moved;
 }
 
 std::string animation_extras(const Skeleton& skeleton, const SegmentFrames& frames,

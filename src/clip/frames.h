@@ -30,6 +30,13 @@ SegmentFrames segment_frames(const Skeleton& skeleton, const Humanoid& humanoid,
 /// parent.
 PerSegment<Quat> rotations_of(const Skeleton& skeleton, const SegmentFrames& frames, const Pose& pose);
 
+/// The same frames in a skeleton that stands in the same pose with other axes. `nodes`: node of the first
+/// skeleton for each node of the second; `second_from_first`: rotation between the worlds of the poses. A
+/// segment whose node the second lacks is fused there.
+SegmentFrames moved_frames(const Skeleton& skeleton, const SegmentFrames& frames, const Pose& pose,
+                           const Quat& second_from_first, const std::vector<int>& nodes,
+                           const Skeleton& second, const Pose& second_pose);
+
 /// What is said of a baked animation beside its frames and marks.
 struct ClipFacts {
   std::string root_motion = "hips";

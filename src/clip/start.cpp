@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantile.h"
+
 namespace ukemi {
 
 namespace {
@@ -22,9 +24,8 @@ double height_above_floor(const Character& character, const Humanoid& humanoid, 
 double floor_of(const Character& character, const Humanoid& humanoid, const std::vector<Pose>& poses) {
   std::vector<double> heights;
   for (const Pose& pose : poses) heights.push_back(height_above_floor(character, humanoid, pose));
-  const auto rank = static_cast<std::ptrdiff_t>(kFloorQuantile * static_cast<double>(heights.size() - 1));
-  std::nth_element(heights.begin(), heights.begin() + rank, heights.end());
-  return heights[static_cast<std::size_t>(rank)];
+  const double rank = kFloorQuantile * static_cast<double>(heights.size() - 1);
+  return ranked(std::move(heights), static_cast<std::size_t>(rank));
 }
 
 Pose unhit_pose(const Skeleton& skeleton, const Humanoid& humanoid, const Start& start, double time_s) {

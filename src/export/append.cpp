@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/errors.h"
 #include "base/files.h"
 #include "load/load.h"
 
@@ -12,14 +13,11 @@ Result<Character> file_to_append_to(const std::filesystem::path& path, const Cha
   auto earlier = load_character(path, LoadOptions{}, unsaid);
   if (!earlier) return earlier.error();
   const auto differs = [&](int node) {
-    return Error{
-        ErrorKind::input,
-        path.string(),
-        0,
-        0,
-        character.skeleton.label(node),
-        fmt::format("holds another skeleton than {}, so no clip can be appended", character.path.string()),
-        "bake with the settings of the first clip, or write another file"};
+    return error_about(character.skeleton.label(node),
+                       input_error(path,
+                                   fmt::format("holds another skeleton than {}, so no clip can be appended",
+                                               character.path.string()),
+                                   "bake with the settings of the first clip, or write another file"));
   };
   for (int i = 0; i < character.skeleton.size(); ++i) {
     if (i >= earlier->skeleton.size()) return differs(i);

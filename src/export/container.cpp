@@ -1,12 +1,15 @@
 #include "export/container.h"
 
-#include "base/errors.h"
-#include "base/files.h"
-#include "base/uri.h"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <limits>
+
+#include "base/base64.h"
+#include "base/errors.h"
+#include "base/files.h"
+#include "base/uri.h"
 
 namespace ukemi {
 namespace {
@@ -14,8 +17,6 @@ namespace {
 void put_u32(std::vector<std::uint8_t>& out, std::size_t value) {
   for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
 }
-
-constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 constexpr std::size_t padded(std::size_t size) { return (size + 3) / 4 * 4; }
 
@@ -47,37 +48,16 @@ Result<std::vector<std::uint8_t>> assemble_glb(std::string json, std::span<const
 }
 
 std::string data_uri(std::string_view mime, std::span<const std::uint8_t> bytes) {
-  std::string out = "data:" + std::string(mime) + ";base64,";
-  out.reserve(out.size() + (bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < left ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= left ? kDigits[word >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
+  return fmt::format("data:{};base64,{}", mime, base64(bytes));
 }
 
 std::optional<std::vector<std::uint8_t>> data_of(std::string_view uri) {
   constexpr std::string_view kMark = ";base64,";
   const std::size_t mark = uri.find(kMark);
   if (!uri.starts_with("data:") || mark == std::string_view::npos) return std::nullopt;
-  std::string_view text = uri.substr(mark + kMark.size());
-  while (text.ends_with('=')) text.remove_suffix(1);
-  std::vector<std::uint8_t> out;
-  out.reserve(text.size() / 4 * 3 + 2);
-  std::uint32_t word = 0;
-  int bits = 0;
-  for (const char c : text) {
-    const std::size_t digit = kDigits.find(c);
-    if (digit == std::string_view::npos) return std::nullopt;
-    word = (word << 6 | static_cast<std::uint32_t>(digit)) & 0xffffff;
-    bits += 6;
-    if (bits < 8) continue;
-    bits -= 8;
-    out.push_back(static_cast<std::uint8_t>(word >> bits));
-  }
-  return out;
+  Base64Bytes decoded = base64_decoded(uri.substr(mark + kMark.size()));
+  if (!decoded.whole()) return std::nullopt;
+  return std::move(decoded.bytes);
 }
 
 std::optional<std::filesystem::path> local_file(std::string_view uri, const std::filesystem::path& folder) {

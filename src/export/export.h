@@ -66,7 +66,11 @@ Result<std::string> write_gltf(const Character& character, const Humanoid& human
 
 struct BvhOptions {
   double metres_per_unit = 0.01;  // unit of a BVH that does not come from a BVH: centimetres
+  std::string extras_json{};      // what is said of the clip, see animation_extras; nothing where empty
 };
+
+/// The node of each joint that write_bvh writes, in the order of the file.
+std::vector<int> bvh_nodes(const Character& character, const Humanoid& humanoid);
 
 /// Same hierarchy, names, offsets, channel order and unit as a BVH source (joints with fewer than three
 /// rotation channels get the nearest rotation those can make; what joints without position channels would
@@ -74,9 +78,10 @@ struct BvhOptions {
 /// ancestors up to the root: offsets as in the reference pose, all rotations zero there and axes along the
 /// world's, root OFFSET 0, positions on the root only, rotations Z Y X: with y in the middle a body that lies
 /// on its back, belly or side, bent hips and bent knees stay clear of the gimbal. The name of the first End
-/// Site says unit and up axis ("unit=0.01m,up=y"): the format has no word for them, and readers skip it
-/// there. Euler angles without jumps, full precision. A joint that the hierarchy holds more than 0.5 mm away
-/// from its place is a warning. Errors: input (a clip without frames or of another skeleton).
+/// Site says unit, up axis and, in base64, `extras_json` ("unit=0.01m,up=y,clip=eyJ1..."): the format has no
+/// word for them, and readers skip it there. Euler angles without jumps, full precision. A joint that the
+/// hierarchy holds more than 0.5 mm away from its place is a warning. Errors: input (a clip without frames or
+/// of another skeleton).
 Result<std::string> write_bvh(const Character& character, const Humanoid& humanoid, const Clip& clip,
                               const BvhOptions& options, Diagnostics& diagnostics);
 

@@ -19,7 +19,7 @@ struct StickMesh {
   std::vector<Affine> inverse_bind;  // per node of the skeleton
 };
 
-/// An elongated octahedron from every node to each of its children and End Sites. Empty when no bone has a
+/// An elongated octahedron from every node of the body to each of its children and End Sites. Empty when no bone has a
 /// length.
 StickMesh make_stick_mesh(const Character& character, const Humanoid& humanoid);
 

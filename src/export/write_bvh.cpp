@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/base64.h"
 #include "base/errors.h"
 #include "export/euler.h"
 #include "export/export.h"
@@ -30,6 +31,7 @@ struct BvhFile {
   double frame_time_s = 0.0;
   bool positions_add = false;             // see BvhSource
   std::optional<double> metres_per_unit;  // said in the file
+  std::string extras_json;                // likewise
 };
 
 /// A node of the character as a joint of the BVH.
@@ -59,9 +61,24 @@ std::string_view channel_name(BvhChannel channel) {
   return kNames[static_cast<std::size_t>(channel)];
 }
 
-/// Puts a joint and all below it. The unit is said once, at the first End Site.
+/// What the file says of itself, as the name of an End Site: one word.
+std::string mark_of(const BvhFile& file) {
+  std::string mark;
+  if (file.metres_per_unit) {
+    mark = "unit=";
+    put(mark, *file.metres_per_unit);
+    mark += "m,up=y";
+  }
+  const std::string& extras = file.extras_json;
+  if (!extras.empty())
+    mark += (mark.empty() ? "clip=" : ",clip=") +
+            base64({reinterpret_cast<const std::uint8_t*>(extras.data()), extras.size()});
+  return mark;
+}
+
+/// Puts a joint and all below it. `mark` is said once, at the first End Site.
 void put_joint(std::string& out, const BvhFile& file, const std::vector<std::vector<int>>& below, int joint,
-               int depth, bool& unit_said) {
+               int depth, std::string& mark) {
   const BvhJoint& j = file.joints[joint];
   const std::string indent(static_cast<std::size_t>(depth), '\t');
   out += indent + (j.parent < 0 ? "ROOT " : "JOINT ") + j.name + '\n' + indent + "{\n" + indent + "\tOFFSET";
@@ -69,14 +86,10 @@ void put_joint(std::string& out, const BvhFile& file, const std::vector<std::vec
   out += '\n' + indent + "\tCHANNELS " + std::to_string(j.channels.size());
   for (const BvhChannel channel : j.channels) (out += ' ') += channel_name(channel);
   out += '\n';
-  for (const int child : below[joint]) put_joint(out, file, below, child, depth + 1, unit_said);
+  for (const int child : below[joint]) put_joint(out, file, below, child, depth + 1, mark);
   if (j.end_site) {
     out += indent + "\tEnd Site";
-    if (file.metres_per_unit && !std::exchange(unit_said, true)) {
-      out += " unit=";
-      put(out, *file.metres_per_unit);
-      out += "m,up=y";
-    }
+    if (!mark.empty()) out += " " + std::exchange(mark, "");
     out += '\n' + indent + "\t{\n" + indent + "\t\tOFFSET";
     put(out, *j.end_site);
     out += '\n' + indent + "\t}\n";
@@ -143,9 +156,9 @@ std::string text_of(const BvhFile& file) {
   for (std::size_t j = 0; j < file.joints.size(); ++j)
     if (file.joints[j].parent >= 0) below[file.joints[j].parent].push_back(static_cast<int>(j));
   std::string out = "HIERARCHY\n";
-  bool unit_said = false;
+  std::string mark = mark_of(file);
   for (std::size_t j = 0; j < file.joints.size(); ++j)
-    if (file.joints[j].parent < 0) put_joint(out, file, below, static_cast<int>(j), 0, unit_said);
+    if (file.joints[j].parent < 0) put_joint(out, file, below, static_cast<int>(j), 0, mark);
   out += "MOTION\nFrames: " + std::to_string(file.frames.size()) + "\nFrame Time: ";
   put(out, file.frame_time_s);
   out += '\n';
@@ -205,7 +218,7 @@ struct Misfit {
 
 BvhFile file_of_source(const Character& character, const Humanoid& humanoid, const Clip& clip,
                        Diagnostics& diagnostics) {
-  BvhFile file{{}, clip.frames, 1.0 / clip.fps, character.bvh->positions_add, character.metres_per_unit};
+  BvhFile file{{}, clip.frames, 1.0 / clip.fps, character.bvh->positions_add, character.metres_per_unit, {}};
   for (int i = 0; i < character.skeleton.size(); ++i) {
     const Node& node = character.skeleton.nodes[i];
     file.joints.push_back({node.name, node.parent, node.rest.translation, character.bvh->channels[i],
@@ -255,6 +268,12 @@ void choose(const std::vector<int>& parents, ChosenNode chosen, std::vector<Chos
   out.push_back(chosen);
   for (std::size_t i = 0; i < parents.size(); ++i)
     if (parents[i] == chosen.node) choose(parents, {static_cast<int>(i), at}, out);
+}
+
+std::vector<ChosenNode> chosen_nodes(const Skeleton& skeleton, const Humanoid& humanoid) {
+  std::vector<ChosenNode> chosen;
+  choose(chosen_parents(skeleton, humanoid), {humanoid.root, -1}, chosen);
+  return chosen;
 }
 
 /// Rotations of all nodes in the y-up world; scales are taken to be uniform.
@@ -393,8 +412,7 @@ BvhFile own_file(const Character& character, const Humanoid& humanoid, const Cli
   const Skeleton& skeleton = character.skeleton;
   const Pose reference = zero_pose(skeleton, humanoid, clip.frames.front());
   const WorldTurns turns(skeleton, humanoid, reference);
-  std::vector<ChosenNode> chosen;
-  choose(chosen_parents(skeleton, humanoid), {humanoid.root, -1}, chosen);
+  const std::vector<ChosenNode> chosen = chosen_nodes(skeleton, humanoid);
   Misfit misfit;
   BvhFile file;
   file.frame_time_s = 1.0 / clip.fps;
@@ -442,8 +460,19 @@ Status check(const Character& character, const Humanoid& humanoid, const Clip& c
 Result<std::string> write_bvh(const Character& character, const Humanoid& humanoid, const Clip& clip,
                               const BvhOptions& options, Diagnostics& diagnostics) {
   if (const Status status = check(character, humanoid, clip, options); !status) return status.error();
-  return text_of(character.bvh ? file_of_source(character, humanoid, clip, diagnostics)
-                               : own_file(character, humanoid, clip, options.metres_per_unit, diagnostics));
+  BvhFile file = character.bvh ? file_of_source(character, humanoid, clip, diagnostics)
+                               : own_file(character, humanoid, clip, options.metres_per_unit, diagnostics);
+  file.extras_json = options.extras_json;
+  return text_of(file);
+}
+
+std::vector<int> bvh_nodes(const Character& character, const Humanoid& humanoid) {
+  std::vector<int> nodes;
+  if (character.bvh)
+    for (int i = 0; i < character.skeleton.size(); ++i) nodes.push_back(i);
+  else
+    for (const ChosenNode& chosen : chosen_nodes(character.skeleton, humanoid)) nodes.push_back(chosen.node);
+  return nodes;
 }
 
 }  // namespace ukemi

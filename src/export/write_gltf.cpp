@@ -293,7 +293,7 @@ std::size_t add_inverse_binds(Edit& edit, const std::vector<Affine>& inverse_bin
 /// those with the same joints the last one tells importers the bind pose.
 void add_bare_skins(Edit& edit, const Character& character, const Humanoid& humanoid) {
   Json skins = Json::array();
-  if (character.format == SourceFormat::bvh) {
+  if (character.format != SourceFormat::gltf && character.skins.empty()) {
     skins.push_back({{"joints", character.skeleton.order}});
     skins[0]["inverseBindMatrices"] =
         add_inverse_binds(edit, make_stick_mesh(character, humanoid).inverse_bind);
@@ -485,6 +485,15 @@ void add_animation(Edit& edit, const ReducedClip& clip, const std::string& extra
 // ---- the whole
 // -----------------------------------------------------------------------------------------------
 
+Error keys_error(const Character& character, int node) {
+  const bool known = node >= 0 && node < character.skeleton.size();
+  Error error =
+      internal_error("the clip's keys are not finite, not one value per time or not in order of time",
+                     "report this as a bug");
+  error.file = character.path.string();
+  return error_about(known ? character.skeleton.label(node) : "", std::move(error));
+}
+
 /// The clip's tracks fit the document and are fit for glTF.
 Status check(const Json& json, const Character& character, const ReducedClip& clip) {
   const auto nodes = json.find("nodes");
@@ -500,15 +509,7 @@ Status check(const Json& json, const Character& character, const ReducedClip& cl
         std::all_of(track.values.begin(), track.values.end(), [](double v) { return std::isfinite(v); });
     if (track.node < 0 || track.node >= character.skeleton.size() || times.empty() || !rising || !finite ||
         track.values.size() != times.size() * width)
-      return Error{ErrorKind::internal,
-                   character.path.string(),
-                   0,
-                   0,
-                   track.node >= 0 && track.node < character.skeleton.size()
-                       ? character.skeleton.label(track.node)
-                       : "",
-                   "the clip's keys are not finite, not one value per time or not in order of time",
-                   "report this as a bug"};
+      return keys_error(character, track.node);
   }
   return Done{};
 }

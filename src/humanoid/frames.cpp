@@ -32,23 +32,52 @@ double head_length(const Character& character, const Humanoid& humanoid, const L
 /// From the lowest skin of the feet to the highest of the head. Arms, props, wings and the ground do not
 /// count, nor do ears, hair and hats that have bones of their own, except where the head has no other skin.
 SkinExtent body_extent(const Character& character, const Humanoid& humanoid, const Landmarks& f,
-                       const Vec3& up) {
+                       const Vec3& up, const std::vector<char>& astray) {
   const Skeleton& skeleton = character.skeleton;
   const int head = humanoid.segments[index(Segment::head)].node();
   const auto owner = segments_of_nodes(skeleton, humanoid);
   const std::vector<char> skinned = skin_joints(character);
   const auto is_head = [&](int node) {
-    return owner[node] == Segment::head && (!skinned[node] || !skeleton.is_ancestor(head, node));
+    return owner[node] == Segment::head && !astray[node] &&
+           (!skinned[node] || !skeleton.is_ancestor(head, node));
   };
   const auto is_low = [&](int node) {
     const Segment left = humanoid.carrier(Segment::foot_l), right = humanoid.carrier(Segment::foot_r);
-    return owner[node] == left || owner[node] == right;
+    return !astray[node] && (owner[node] == left || owner[node] == right);
   };
+  if (astray[head]) return {};
   SkinExtent crown = skin_extent(character, f.world, up, is_head);
   if (!crown.found)
-    crown = skin_extent(character, f.world, up, [&](int node) { return owner[node] == Segment::head; });
+    crown = skin_extent(character, f.world, up,
+                        [&](int node) { return owner[node] == Segment::head && !astray[node]; });
   const SkinExtent soles = skin_extent(character, f.world, up, is_low);
   return {crown.found && soles.found, soles.min, crown.max};
+}
+
+/// Nodes of the body whose skin lies far away from them: its bind pose has nothing to do with the skeleton.
+std::vector<char> skin_astray(const Character& character, const Humanoid& humanoid, const Landmarks& f,
+                              double height, Diagnostics& diagnostics) {
+  const auto owner = segments_of_nodes(character.skeleton, humanoid);
+  std::vector<char> astray(character.skeleton.nodes.size(), 0);
+  std::size_t count = 0;
+  CarriedSkin farthest;
+  for (const CarriedSkin& skin : carried_skin(character, f.world)) {
+    if (!is_astray(skin.distance, height)) continue;
+    astray[static_cast<std::size_t>(skin.node)] = 1;
+    if (!owner[static_cast<std::size_t>(skin.node)]) continue;
+    ++count;
+    if (skin.distance > farthest.distance) farthest = skin;
+  }
+  if (count > 0)
+    diagnostics.warn(
+        character.path.string(),
+        fmt::format(
+            "the bind pose of the skin does not fit the skeleton: the skin of {} bone{} lies elsewhere, "
+            "that of '{}' {:.1f} times the body's height away; height and shapes are those of the "
+            "bones: --height sets the height",
+            count, count == 1 ? "" : "s", character.skeleton.label(farthest.node),
+            farthest.distance / height));
+  return astray;
 }
 
 /// Sole to crown, file units. From the skin where its extent fits the skeleton, else from the bones: hip to
@@ -66,7 +95,8 @@ double height_in_file(const Character& character, const Humanoid& humanoid, cons
   double height = 0.65 * body / 0.8625 + 0.35 * legs / 0.491;
   const double top = head_length(character, humanoid, f);
   if (top > 0.05 * body && top < 0.6 * body) height = std::max(height, (body + top) / 0.955);
-  const SkinExtent extent = body_extent(character, humanoid, f, reference.up);
+  const std::vector<char> astray = skin_astray(character, humanoid, f, height, diagnostics);
+  const SkinExtent extent = body_extent(character, humanoid, f, reference.up, astray);
   const double skin_height = extent.max - extent.min;
   if (!extent.found) return height;
   if (skin_height > 0.85 * height && skin_height < 2.1 * height) return skin_height;

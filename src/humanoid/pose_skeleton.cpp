@@ -15,6 +15,8 @@ struct NodeMotion {
   Segment segment = Segment::pelvis;
 };
 
+bool is_hand(Segment s) { return s == Segment::hand_l || s == Segment::hand_r; }
+
 Quat turn_of(const BodyPose& from, const BodyPose& to, Segment s) {
   return (to[index(s)].rotation * from[index(s)].rotation.conjugate()).normalized();
 }
@@ -33,8 +35,9 @@ std::vector<NodeMotion> motions_of(const Skeleton& skeleton, const Humanoid& hum
       NodeMotion& motion = motions[nodes.chain[k]];
       motion.turns = true;
       motion.segment = segment;
-      motion.turn =
-          k + 1 == nodes.chain.size() ? turn : parent_turn.slerp((static_cast<double>(k) + 1.0) / n, turn);
+      // Bones of a hand lie in one place, and thumbs hang on the first of them.
+      const bool whole = k + 1 == nodes.chain.size() || is_hand(segment);
+      motion.turn = whole ? turn : parent_turn.slerp((static_cast<double>(k) + 1.0) / n, turn);
       motion.moves = nodes.detached && k == 0;
       if (motion.moves) motion.holder = humanoid.holder_of(segment);
     }

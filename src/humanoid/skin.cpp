@@ -87,6 +87,24 @@ SkinExtent skin_extent(const Character& character, const std::vector<Affine>& wo
   return extent;
 }
 
+std::vector<CarriedSkin> carried_skin(const Character& character,
+                                      const std::vector<Affine>& world_from_node) {
+  std::vector<double> sum(world_from_node.size(), 0.0), count(world_from_node.size(), 0.0);
+  for (const MeshPart& part : character.parts) {
+    if (part.skin < 0 || part.joints.empty()) continue;
+    const PosedPart skin = posed(character, part, world_from_node);
+    for (std::size_t v = 0; v < skin.places.size(); ++v) {
+      const auto node = static_cast<std::size_t>(skin.nodes[v]);
+      sum[node] += (skin.places[v] - world_from_node[node].translation()).norm();
+      ++count[node];
+    }
+  }
+  std::vector<CarriedSkin> carried;
+  for (std::size_t node = 0; node < sum.size(); ++node)
+    if (count[node] > 0.0) carried.push_back({static_cast<int>(node), sum[node] / count[node]});
+  return carried;
+}
+
 std::vector<Vec3> surface_points(const Character& character, const std::vector<Affine>& world_from_node,
                                  double spacing, const std::function<bool(int node)>& counts) {
   std::vector<Vec3> points;

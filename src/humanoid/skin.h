@@ -22,6 +22,17 @@ struct SkinExtent {
 SkinExtent skin_extent(const Character& character, const std::vector<Affine>& world_from_node,
                        const Vec3& direction, const std::function<bool(int node)>& counts = {});
 
+/// A node and how far the vertices that it carries lie from it in the mean, file units.
+struct CarriedSkin {
+  int node = -1;
+  double distance = 0.0;
+};
+/// Of every joint of a skin that carries vertices, in the order of the nodes.
+std::vector<CarriedSkin> carried_skin(const Character& character, const std::vector<Affine>& world_from_node);
+
+/// Farther from its joint than any skin of a body: its bind pose has nothing to do with the skeleton.
+inline bool is_astray(double distance, double height) { return distance > 0.6 * height; }
+
 /// Points on the edges of triangles whose ends both count, at most `spacing` apart, file units.
 std::vector<Vec3> surface_points(const Character& character, const std::vector<Affine>& world_from_node,
                                  double spacing, const std::function<bool(int node)>& counts);

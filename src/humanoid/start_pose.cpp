@@ -212,6 +212,8 @@ BodyPose body_in(const Stance& stance, const BodyPose& from) {
   return figure.to;
 }
 
+constexpr double kFarSole = 0.4;  // of the height, from the ankle: farther than any shoe
+
 /// Of the skin around the foot bones, along a direction of the world (unit), file units.
 SkinExtent extent_of_feet(const Character& character, const Humanoid& humanoid, const Pose& pose,
                           std::initializer_list<Segment> feet, const Vec3& direction) {
@@ -239,6 +241,7 @@ double short_heels(const Character& character, const Humanoid& humanoid, const B
     const double heel = from[index(foot)].translation.dot(forward) -
                         humanoid.world_from_file.scale * extent.min -
                         humanoid.world_from_file.translation.dot(forward);
+    if (std::abs(heel) > kFarSole * humanoid.height_m) return 0.0;
     missing += 0.5 * std::clamp(kHeel * humanoid.height_m - heel, 0.0, kHeel * humanoid.height_m);
   }
   return missing;
@@ -250,8 +253,12 @@ double lowest_sole(const Character& character, const Humanoid& humanoid, const P
   const std::vector<Affine> world = world_transforms(character.skeleton, pose);
   const SkinExtent extent =
       extent_of_feet(character, humanoid, pose, {Segment::foot_l, Segment::foot_r}, Vec3::UnitY());
-  if (extent.found) return humanoid.world_from_file.scale * extent.min;
   const BodyPose body = segments_of(character.skeleton, humanoid, pose);
+  const double ankle =
+      std::min(body[index(Segment::foot_l)].translation.y(), body[index(Segment::foot_r)].translation.y());
+  const double sole = humanoid.world_from_file.scale * extent.min;
+  const bool near_feet = std::abs(sole - ankle) < kFarSole * humanoid.height_m;  // else a wrong bind pose
+  if (extent.found && near_feet) return sole;
   double lowest = 1e300;
   for (int side = 0; side < 2; ++side) {
     // Ankle centre 0.039 of the height above the sole (de Leva 1996), toe joint about 0.012.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/low_pass.h"
 #include "clip/frames.h"
 
 namespace ukemi {
@@ -15,32 +16,6 @@ constexpr double kStandingSpeed = 0.1;                      // m/s, of the pelvi
 constexpr double kCalmSpeed = 0.4;                          // m/s, of every other segment
 constexpr double kWalkingSpeed = 0.5, kRunningSpeed = 2.2;  // m/s, of the pelvis, horizontally
 constexpr double kUpright = radians(30.0);                  // of the pelvis
-
-/// y[n] = b0 x[n] + b1 x[n-1] + b2 x[n-2] - a1 y[n-1] - a2 y[n-2]
-struct Biquad {
-  double b0, b1, b2, a1, a2;
-};
-
-/// -3 dB at `cutoff_hz` (bilinear transform).
-Biquad butterworth(double rate_hz, double cutoff_hz) {
-  const double k = std::tan(kPi * cutoff_hz / rate_hz);
-  const double norm = 1.0 / (1.0 + std::sqrt(2.0) * k + k * k);
-  const double b = k * k * norm;
-  return {b, 2.0 * b, b, 2.0 * (k * k - 1.0) * norm, (1.0 - std::sqrt(2.0) * k + k * k) * norm};
-}
-
-/// Starts as if the first value had always been there.
-void run_filter(const Biquad& f, std::vector<double>& values) {
-  double x1 = values.front(), x2 = x1, y1 = x1, y2 = x1;
-  for (double& value : values) {
-    const double x = value;
-    value = f.b0 * x + f.b1 * x1 + f.b2 * x2 - f.a1 * y1 - f.a2 * y2;
-    x2 = x1;
-    x1 = x;
-    y2 = y1;
-    y1 = value;
-  }
-}
 
 /// Largest mean speed of the segments (but the pelvis) over a span of poses.
 double fastest_segment(const BodyPose& before, const BodyPose& after, double span_s) {
@@ -80,13 +55,12 @@ std::vector<bool> glitches(const std::vector<Vec3>& speeds) {
   return result;
 }
 
-void filter(std::vector<Vec3>& speeds, double fps, double cutoff_hz) {
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values(speeds.size());
-    for (std::size_t i = 0; i < speeds.size(); ++i) values[i] = speeds[i][axis];
-    values = low_pass(values, fps, cutoff_hz);
-    for (std::size_t i = 0; i < speeds.size(); ++i) speeds[i][axis] = values[i];
-  }
+/// Levels beyond the ends; a cut-off beyond 0.3 of the rate is lowered to that.
+std::vector<Vec3> steady_low_pass(const std::vector<Vec3>& speeds, double fps, double cutoff_hz) {
+  if (speeds.size() < 2) return speeds;
+  const Butterworth filter(std::min(cutoff_hz, 0.3 * fps), fps);
+  const auto reach = std::min(speeds.size() - 1, static_cast<std::size_t>(std::ceil(fps / cutoff_hz)) * 3);
+  return zero_phase(speeds, filter, reach, Beyond::mirrored);
 }
 
 /// In the axes that the swing carries along: (a_y, a_z, alpha).
@@ -114,35 +88,6 @@ Quat rotation_of(const RangeOfMotion& range, Joint joint, const PerSegment<Quat>
 
 }  // namespace
 
-std::vector<double> low_pass(const std::vector<double>& values, double rate_hz, double cutoff_hz) {
-  if (values.size() < 2) return values;
-  const Biquad filter = butterworth(rate_hz, std::min(cutoff_hz, 0.3 * rate_hz));
-  const auto reach =
-      std::min(values.size() - 1, static_cast<std::size_t>(std::ceil(rate_hz / cutoff_hz)) * 3);
-  std::vector<double> padded;
-  for (std::size_t i = reach; i > 0; --i) padded.push_back(values[i]);
-  padded.insert(padded.end(), values.begin(), values.end());
-  for (std::size_t i = 0; i < reach; ++i) padded.push_back(values[values.size() - 2 - i]);
-  for (int pass = 0; pass < 2; ++pass) {
-    run_filter(filter, padded);
-    std::reverse(padded.begin(), padded.end());
-  }
-  const auto first = padded.begin() + static_cast<std::ptrdiff_t>(reach);
-  return {first, first + static_cast<std::ptrdiff_t>(values.size())};
-}
-
-double percentile(std::vector<TimedValue> values, double share) {
-  std::sort(values.begin(), values.end(),
-            [](const TimedValue& a, const TimedValue& b) { return a.value < b.value; });
-  double total_s = 0.0, passed_s = 0.0;
-  for (const TimedValue& value : values) total_s += value.seconds;
-  for (const TimedValue& value : values) {
-    passed_s += value.seconds;
-    if (passed_s >= share * total_s * (1.0 - 1e-12)) return value.value;
-  }
-  return 0.0;
-}
-
 JointSpeeds joint_speeds(const Skeleton& skeleton, const Humanoid& humanoid, const RangeOfMotion& range,
                          const Clip& clip, double cutoff_hz) {
   JointSpeeds result;
@@ -169,7 +114,7 @@ JointSpeeds joint_speeds(const Skeleton& skeleton, const Humanoid& humanoid, con
       speeds.push_back(speed_between(rotation_of(range, joint, rotations[f]),
                                      rotation_of(range, joint, rotations[f + 1]), clip.fps));
     result.glitch[j] = glitches(speeds);
-    if (cutoff_hz > 0.0) filter(speeds, clip.fps, cutoff_hz);
+    if (cutoff_hz > 0.0) speeds = steady_low_pass(speeds, clip.fps, cutoff_hz);
   }
   return result;
 }

@@ -10,19 +10,6 @@
 
 namespace ukemi {
 
-/// Second-order Butterworth low-pass run forwards and backwards: no delay, half the amplitude at `cutoff_hz`.
-/// Ends are reflected. A cutoff beyond 0.3 of the rate is lowered to that.
-std::vector<double> low_pass(const std::vector<double>& values, double rate_hz, double cutoff_hz);
-
-/// A value that held for a time.
-struct TimedValue {
-  double value = 0.0;
-  double seconds = 0.0;
-};
-
-/// The least value that is not exceeded for `share` of the time; 0 for none.
-double percentile(std::vector<TimedValue> values, double share);
-
 /// What a person does in a frame, as far as the speeds of joints depend on it.
 enum class Activity { standing, walking, other };
 

@@ -18,9 +18,6 @@ Course low_passed(const Course& values, double fps, double cutoff_hz);
 /// Per second: central differences, one-sided at the ends.
 Course rate_of(const Course& values, double fps);
 
-/// The value below which a share of the values lies, interpolated linearly; 0 for none.
-double quantile(std::vector<double> values, double share);
-
 /// Lengths of the vectors, of their horizontal parts.
 std::vector<double> norms(const Course& values);
 std::vector<double> horizontal_norms(const Course& values);

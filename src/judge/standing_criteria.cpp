@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/quantile.h"
 #include "body/on_ground.h"
 #include "judge/criteria.h"
 

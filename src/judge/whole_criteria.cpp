@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/quantile.h"
 #include "judge/criteria.h"
 
 namespace ukemi {

@@ -254,8 +254,10 @@ class SceneConverter {
                                 std::min<std::size_t>(bytes.size(), 4));
     const bool png = head == "\x89PNG";
     if (!png && !head.starts_with("\xFF\xD8\xFF")) {
-      warn(fmt::format("texture {} is no PNG or JPEG that can be read; pictures show its material plain",
-                       load::quoted(name_of(name))));
+      warn(fmt::format("texture {} is {}; pictures and .glb show its material '{}' plain",
+                       load::quoted(name_of(name)),
+                       bytes.empty() ? "not beside the file" : "no PNG or JPEG that can be read",
+                       name_of(material.GetName())));
       return -1;
     }
     known->second = static_cast<int>(images_.size());

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/base64.h"
 #include "base/errors.h"
 #include "load/load.h"
 #include "load/text.h"
@@ -97,8 +98,13 @@ std::optional<BvhChannel> channel_named(std::string_view word) {
   return std::nullopt;
 }
 
-/// The unit in the name of an End Site as this program writes it ("unit=0.01m,up=y").
-std::optional<double> unit_in_mark(std::string_view mark) {
+/// What the name of an End Site says where this program wrote it ("unit=0.01m,up=y,clip=eyJ1...").
+struct FileMark {
+  std::optional<double> metres_per_unit;
+  std::string extras_json;
+};
+
+std::optional<double> unit_in(std::string_view mark) {
   constexpr std::string_view kBefore = "unit=", kAfter = "m,up=y";
   if (!mark.starts_with(kBefore) || !mark.ends_with(kAfter)) return std::nullopt;
   mark.remove_prefix(kBefore.size());
@@ -106,6 +112,16 @@ std::optional<double> unit_in_mark(std::string_view mark) {
   mark.remove_suffix(kAfter.size());
   const auto unit = load::whole_number(mark);
   return unit && *unit > 0.0 ? unit : std::nullopt;
+}
+
+FileMark mark_in(std::string_view name) {
+  constexpr std::string_view kClip = "clip=";
+  const std::size_t clip = name.starts_with(kClip) ? 0 : name.find(",clip=");
+  if (clip == name.npos) return {unit_in(name), ""};
+  FileMark mark{unit_in(name.substr(0, clip)), ""};
+  const Base64Bytes bytes = base64_decoded(name.substr(name.find('=', clip) + 1));
+  if (bytes.whole()) mark.extras_json.assign(bytes.bytes.begin(), bytes.bytes.end());
+  return mark;
 }
 
 /// Reads one file; every function leaves the scanner behind what it read.
@@ -123,7 +139,7 @@ class BvhReader {
   Skeleton skeleton;
   BvhSource source;
   double fps = 0.0;
-  std::optional<double> metres_per_unit;  // from the name of an End Site, see unit_in_mark
+  FileMark mark;  // the last one that says something
 
  private:
   /// A joint whose closing brace has not come yet.
@@ -255,7 +271,8 @@ class BvhReader {
     const int joint = open_.back().joint;
     const std::string_view kind = scanner_.name();
     if (!same_word(kind.substr(0, 4), "Site")) return expected("Site after End", kind);
-    if (const auto unit = unit_in_mark(trimmed(kind.substr(4)))) metres_per_unit = unit;
+    FileMark said = mark_in(trimmed(kind.substr(4)));
+    if (said.metres_per_unit || !said.extras_json.empty()) mark = std::move(said);
     if (Status s = expect_word("{"); !s) return s;
     if (Status s = expect_word("OFFSET"); !s) return s;
     const Result<Vec3> offset = read_vector();
@@ -519,9 +536,10 @@ Result<Character> read_bvh(std::string_view text, const std::filesystem::path& p
   [[maybe_unused]] const bool sorted = character.skeleton.sort();
   assert(sorted && "joints are read parents first");
   reader.source.positions_add = positions_lie_around_zero(reader.source, character.skeleton);
-  character.metres_per_unit = reader.metres_per_unit;
-  if (reader.metres_per_unit) character.yup_from_file = Quat::Identity();
+  character.metres_per_unit = reader.mark.metres_per_unit;
+  if (reader.mark.metres_per_unit) character.yup_from_file = Quat::Identity();
   character.animations.push_back(animation_of(reader.source, character.skeleton, reader.fps, character.name));
+  character.animations.back().extras_json = std::move(reader.mark.extras_json);
   character.document.json = document_of(character.skeleton);
   character.document.folder = path.parent_path();
   character.bvh = std::move(reader.source);

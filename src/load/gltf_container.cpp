@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 
+#include "base/base64.h"
 #include "base/files.h"
 #include "base/uri.h"
 #include "load/text.h"
@@ -74,36 +75,11 @@ GltfContainer split_glb(std::span<const std::uint8_t> bytes) {
   return container;
 }
 
-std::array<std::int8_t, 256> base64_values() {
-  std::array<std::int8_t, 256> values{};
-  values.fill(-1);
-  const std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (std::size_t i = 0; i < alphabet.size(); ++i)
-    values[static_cast<std::uint8_t>(alphabet[i])] = static_cast<std::int8_t>(i);
-  values['-'] = 62;  // the URL-safe alphabet
-  values['_'] = 63;
-  return values;
-}
-
-std::vector<std::uint8_t> base64_decoded(const JsonView& place, std::string_view text) {
-  static const std::array<std::int8_t, 256> kValues = base64_values();
-  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(text.size() * 3 / 4);
-  std::uint32_t bits = 0;
-  int bit_count = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const int value = kValues[static_cast<std::uint8_t>(text[i])];
-    if (value < 0) place.refuse(fmt::format("has malformed base64 at character {}", i));
-    bits = bits << 6 | static_cast<std::uint32_t>(value);
-    bit_count += 6;
-    if (bit_count >= 8) {
-      bit_count -= 8;
-      bytes.push_back(static_cast<std::uint8_t>(bits >> bit_count));
-    }
-  }
-  if (text.size() % 4 == 1) place.refuse("has base64 that is cut off");
-  return bytes;
+std::vector<std::uint8_t> bytes_of_base64(const JsonView& place, std::string_view text) {
+  Base64Bytes decoded = base64_decoded(text);
+  if (decoded.cut_off) place.refuse("has base64 that is cut off");
+  if (!decoded.whole()) place.refuse(fmt::format("has malformed base64 at character {}", decoded.bad_at));
+  return std::move(decoded.bytes);
 }
 
 std::vector<std::uint8_t> decode_data_uri(const JsonView& place, std::string_view uri) {
@@ -112,8 +88,8 @@ std::vector<std::uint8_t> decode_data_uri(const JsonView& place, std::string_vie
   const std::string_view head = uri.substr(0, comma);
   const std::string_view body = uri.substr(comma + 1);
   if (head.ends_with(";base64"))
-    return body.find('%') == body.npos ? base64_decoded(place, body)
-                                       : base64_decoded(place, percent_decoded(body));
+    return body.find('%') == body.npos ? bytes_of_base64(place, body)
+                                       : bytes_of_base64(place, percent_decoded(body));
   const std::string plain = percent_decoded(body);
   return {plain.begin(), plain.end()};
 }

@@ -63,7 +63,7 @@ const std::vector<Need>& needs() {
       {{"hold"}, "--until-rest", [](const Given& g) { return g.settings.until_rest; }},
       {{"to"}, "--recover", [](const Given& g) { return g.settings.recover_s.has_value(); }},
       {{"extra-bones"}, "a start --clip", [](const Given& g) { return g.settings.clip.has_value(); }},
-      {{"keys", "rotation-type"}, "a glTF to write", writes_gltf},
+      {{"keys", "rotation-type", "all-joints"}, "a glTF to write", writes_gltf},
       {{"clip-only"},
        "a glTF or FBX to write",
        [](const Given& g) { return writes_gltf(g) || writes(g, {".fbx"}); }},

@@ -274,7 +274,8 @@ Settings hit_settings() {
           [](auto& s) -> auto& { return s.hit; }, parse_segment),
       parsed<S>(
           "from", "DIR",
-          "where the blow comes from: front back left right above, or AZIMUTH[,ELEVATION] in degrees, 0 = "
+          "where the blow comes from: front back left right above front_left ..., or AZIMUTH[,ELEVATION] in "
+          "degrees, 0 = "
           "from the front, 90 = from the character's left [-360 to 360, -90 to 90]",
           [](auto& s) -> auto& { return s.from; }, parse_direction),
       text<S>(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "humanoid/skin.h"
 #include "render/overlays.h"
 
 namespace ukemi {
@@ -143,6 +144,23 @@ std::vector<Rgba> bone_colors(const Shot& shot) {
   return colors;
 }
 
+/// A mesh that shows little of the body, as a head or a sliver does: two of its three extents are far smaller
+/// than the skeleton.
+bool is_sliver(const Character& character, const std::vector<Affine>& file_from_node,
+               const std::vector<int>& joints) {
+  constexpr double kThin = 0.15;  // of the skeleton's largest extent: a man is 0.27 wide at the shoulders
+  Vec3 sizes;
+  Eigen::AlignedBox3d skeleton;
+  for (const int joint : joints) skeleton.extend(Vec3(file_from_node[joint].translation()));
+  for (int axis = 0; axis < 3; ++axis) {
+    const SkinExtent extent = skin_extent(character, file_from_node, Vec3::Unit(axis));
+    if (!extent.found) return false;
+    sizes[axis] = extent.max - extent.min;
+  }
+  std::sort(sizes.begin(), sizes.end());
+  return !skeleton.isEmpty() && sizes[2] > 0.0 && sizes[1] < kThin * skeleton.sizes().maxCoeff();
+}
+
 }  // namespace
 
 DrawnCharacter::DrawnCharacter(const Shot& shot, const Overlays& overlays)
@@ -153,9 +171,10 @@ DrawnCharacter::DrawnCharacter(const Shot& shot, const Overlays& overlays)
       overlays_(overlays) {
   const auto visible = [](const MeshPart& part) { return !part.indices.empty(); };
   mesh_ = std::any_of(shot.character->parts.begin(), shot.character->parts.end(), visible);
+  covers_ = mesh_ && !is_sliver(*shot.character, world(0), joint_nodes_);
   const bool can_show_shapes =
       shot.body != nullptr && shot.segments != nullptr && shot.segments->size() == shot.clip->frames.size();
-  shapes_ = can_show_shapes && (overlays.shapes || !mesh_);
+  shapes_ = can_show_shapes && (overlays.shapes || !covers_);
   overlays_.axes = overlays.axes && can_show_shapes;
   overlays_.ranges = overlays.ranges && can_show_shapes && shot.range != nullptr;
   overlays_.shapes = overlays.shapes && can_show_shapes;
@@ -191,9 +210,9 @@ Vec3 DrawnCharacter::facing(int frame) const {
 Geometry DrawnCharacter::body(int frame) const {
   Geometry geometry;
   const std::vector<Affine> file_from_node = world(frame);
-  if (mesh_)
-    add_mesh(geometry, file_from_node);
-  else if (shapes_)
+  if (mesh_) add_mesh(geometry, file_from_node);
+  if (covers_) return geometry;
+  if (shapes_)
     add_shapes(geometry, frame, 1.0f);
   else
     add_bones(geometry, file_from_node);
@@ -214,7 +233,7 @@ Geometry DrawnCharacter::ghost(int frame) const {
 
 FrameGeometry DrawnCharacter::geometry(int frame) const {
   FrameGeometry result{body(frame)};
-  if (mesh_ && shapes_) add_shapes(result.overlay, frame, kOverlayAlpha);
+  if (covers_ && shapes_) add_shapes(result.overlay, frame, kOverlayAlpha);
   add_props(result.solid, frame);
   if (overlays_.prints) floor_marks_.add_prints(result.solid, frame);
   if (overlays_.shapes) floor_marks_.add_support(result.solid, shot_, frame);

@@ -23,7 +23,7 @@ class DrawnCharacter {
 
   /// Places of the joints, metres: the humanoid's nodes, else the skins' joints, else all nodes.
   std::vector<Vec3> joints(int frame) const;
-  /// Mesh, shapes or bones alone.
+  /// The mesh; shapes or bones where there is none, and beside one that shows little of the body.
   Geometry body(int frame) const;
   /// The body as a see-through shape without shadow.
   Geometry ghost(int frame) const;
@@ -46,6 +46,7 @@ class DrawnCharacter {
   std::vector<int> joint_nodes_;
   std::vector<Rgba> bone_colors_;  // per node
   bool mesh_ = false;
+  bool covers_ = false;  // the mesh is the body
   bool shapes_ = false;
   Overlays overlays_;
   FloorMarks floor_marks_;  // where prints are drawn

@@ -2,6 +2,7 @@
 
 #include <csetjmp>
 
+#include "base/errors.h"
 #include "render/render.h"
 
 namespace ukemi {
@@ -49,16 +50,13 @@ bool write(png_structp png, png_infop info, const Picture& picture, bool opaque,
 Result<std::vector<std::uint8_t>> encode_png(const Picture& picture) {
   if (picture.width <= 0 || picture.height <= 0 ||
       picture.rgba.size() != std::size_t{4} * picture.width * picture.height)
-    return Error{ErrorKind::internal, "", 0, 0, "", "the picture's size does not fit its pixels",
-                 "report this"};
+    return internal_error("the picture's size does not fit its pixels", "report this");
   std::vector<std::uint8_t> bytes;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png ? png_create_info_struct(png) : nullptr;
   const bool written = info && write(png, info, picture, is_opaque(picture), bytes);
   png_destroy_write_struct(&png, &info);
-  if (!written)
-    return Error{ErrorKind::output,         "", 0, 0, "", "cannot encode the picture as PNG",
-                 "choose a smaller picture"};
+  if (!written) return output_error({}, "cannot encode the picture as PNG", "choose a smaller picture");
   return bytes;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/errors.h"
 #include "render/page.h"
 #include "render/staging.h"
 
@@ -22,9 +23,7 @@ constexpr double kTitleSize = 23, kRowSize = 16, kTextSize = 14, kSmallSize = 12
 const Rgba kMarkerColor = srgb(0xE0201B, 0.92f);
 constexpr Color kMarkerInk = hex(0xC81410);
 
-Error internal(std::string what) {
-  return {ErrorKind::internal, "", 0, 0, "", std::move(what), "report this"};
-}
+Error internal(std::string what) { return internal_error(std::move(what), "report this"); }
 
 Status check(const std::vector<MarkedShot>& rows) {
   if (rows.empty()) return internal("no row to draw");

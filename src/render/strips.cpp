@@ -106,10 +106,10 @@ Error size_error(int width, int height, std::string fix) {
 }
 
 Status check(const std::vector<Shot>& shots) {
-  if (shots.empty()) return Error{ErrorKind::internal, "", 0, 0, "", "no clip to draw", "report this"};
+  if (shots.empty()) return internal_error("no clip to draw", "report this");
   for (const Shot& shot : shots)
     if (shot.clip == nullptr || shot.clip->fps != shots.front().clip->fps)
-      return Error{ErrorKind::internal, "", 0, 0, "", "clips of different rates", "report this"};
+      return internal_error("clips of different rates", "report this");
   return Done{};
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 Status check(const Shot& shot) {
   if (shot.character == nullptr || shot.clip == nullptr)
-    return Error{ErrorKind::internal, "", 0, 0, "", "a shot without character or clip", "report this"};
+    return internal_error("a shot without character or clip", "report this");
   if (shot.clip->frames.empty())
     return input_error(shot.character->path, fmt::format("the clip '{}' has no frames", shot.clip->name),
                        "choose another clip");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "base/errors.h"
 #include "render/moving.h"
 #include "render/render.h"
 
@@ -15,8 +16,7 @@ constexpr int kMovingMethod = 1;
 constexpr int kStillMethod = 4;
 
 Error failed(const std::string& why) {
-  return {ErrorKind::output,         "", 0, 0, "", "cannot encode the picture as WebP: " + why,
-          "choose a smaller picture"};
+  return output_error({}, "cannot encode the picture as WebP: " + why, "choose a smaller picture");
 }
 
 std::string reason_of(WebPEncodingError error) {

@@ -4,7 +4,8 @@
 
 #include <bit>
 
-#include "export/container.h"
+#include "base/base64.h"
+#include "base/fnv.h"
 
 namespace ukemi {
 namespace {
@@ -13,9 +14,7 @@ static_assert(std::endian::native == std::endian::little, "packed() writes the m
 
 template <typename Number>
 std::string packed_bytes(std::span<const Number> values) {
-  const std::string uri =
-      data_uri("", {reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()});
-  return uri.substr(uri.find(',') + 1);
+  return base64({reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()});
 }
 
 }  // namespace
@@ -32,9 +31,9 @@ std::string packed(std::span<const std::uint16_t> values) { return packed_bytes(
 std::string packed(std::span<const std::uint32_t> values) { return packed_bytes(values); }
 
 std::string content_hash(std::string_view bytes) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  return fmt::format("{:016x}", hash);
+  Fnv hash;
+  hash.add(bytes);
+  return fmt::format("{:016x}", hash.value());
 }
 
 }  // namespace ukemi

@@ -11,6 +11,7 @@
 
 #include "base/errors.h"
 #include "base/files.h"
+#include "base/or_null.h"
 #include "base/parallel.h"
 #include "base/version.h"
 #include "review/clip.h"
@@ -184,10 +185,8 @@ Status make_all(const fs::path& folder, const std::vector<ReviewSource>& sources
   });
 }
 
-Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
-
 /// As a link from the page: each part of the path escaped by the page itself.
-Json link(const fs::path& path) { return text_or_null(path.generic_string()); }
+Json link(const fs::path& path) { return text_or_null<Json>(path.generic_string()); }
 
 Json reaction_json(const ReviewSource& source, const Made& made) {
   Json figures = Json::parse(source.figures_json);
@@ -203,18 +202,18 @@ Json reaction_json(const ReviewSource& source, const Made& made) {
   json["character"] = source.character;
   json["name"] = source.name;
   json["status"] = made.error.empty() ? source.status : "unreadable";
-  json["error"] = text_or_null(made.error.empty() ? source.error : made.error);
+  json["error"] = text_or_null<Json>(made.error.empty() ? source.error : made.error);
   json["settings"] = Json::parse(source.settings_json);
   json["figures"] = std::move(figures);
-  json["digest"] = text_or_null(source.digest);
+  json["digest"] = text_or_null<Json>(source.digest);
   json["warnings"] = source.warnings;
   json["outputs"] = source.outputs;
   json["report"] = link(source.report);
   json["sheet"] = link(source.sheet);
-  json["clip"] = text_or_null(made.clip_file);
-  json["mesh"] = text_or_null(made.character_file);
-  json["thumbnail"] = text_or_null(made.thumbnail_light);
-  json["thumbnail_dark"] = text_or_null(made.thumbnail_dark);
+  json["clip"] = text_or_null<Json>(made.clip_file);
+  json["mesh"] = text_or_null<Json>(made.character_file);
+  json["thumbnail"] = text_or_null<Json>(made.thumbnail_light);
+  json["thumbnail_dark"] = text_or_null<Json>(made.thumbnail_dark);
   return json;
 }
 
@@ -223,8 +222,8 @@ std::string table_json(const ReviewSources& sources, const std::vector<Made>& ma
   Json json;
   json["format"] = 1;
   json["generator"] = generator();
-  json[kManifestKey] = text_or_null(manifest);
-  json["recipe"] = text_or_null(sources.recipe);
+  json[kManifestKey] = text_or_null<Json>(manifest);
+  json["recipe"] = text_or_null<Json>(sources.recipe);
   json["reactions"] = Json::array();
   for (std::size_t i = 0; i < made.size(); ++i)
     json["reactions"].push_back(reaction_json(sources.reactions[i], made[i]));

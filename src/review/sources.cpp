@@ -6,8 +6,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "bake/outputs.h"
+#include "bake/report_keys.h"
 #include "base/digest.h"
 #include "base/errors.h"
 #include "base/file_names.h"
@@ -54,30 +56,18 @@ void complete(Json& target, const Json& from) {
     if (!target.contains(key) || target[key].is_null()) target[key] = value;
 }
 
-Json settings_of_report(const Json& report) {
+Json shown_of_report(const Json& report, std::span<const ReportKey> keys) {
   Json json;
-  json["hit"] = value_at(report, {"impact", "segment"});
-  json["from"] = value_at(report, {"impact", "from"});
-  json["preset"] = value_at(report, {"impact", "preset"});
-  json["scene"] = value_at(report, {"impact", "scene"});
-  for (const char* key :
-       {"pose", "clip", "at_s", "region", "limits", "active", "tone", "rate", "fps", "seed"})
-    json[key] = value_at(report, {"settings", key});
+  for (const ReportKey& place : keys) json[place.shown] = value_at(report, {place.section, place.key});
   return json;
 }
 
+Json settings_of_report(const Json& report) { return shown_of_report(report, kReportSettings); }
+
 Json figures_of_report(const Json& report) {
-  Json json;
-  for (const char* key : {"excess_max_deg", "excess_p999_deg", "over_1deg", "samples", "worst_joint"})
-    json[key] = value_at(report, {"limits", key});
-  json["momentum_n_s"] = value_at(report, {"impact", "momentum_n_s"});
-  for (const char* key : {"rest_time_s", "joint_separation_max_m", "energy_gain_max_j",
-                          "floor_penetration_max_m", "self_penetration_max_m"})
-    json[key] = value_at(report, {"simulation", key});
-  for (const char* key : {"outcome", "end_pose", "score"}) json[key] = value_at(report, {"response", key});
-  if (const Json steps = value_at(report, {"response", "steps"}); steps.is_array()) json["steps"] = steps.size();
+  Json json = shown_of_report(report, kReportFigures);
+  json["steps"] = json["steps"].is_array() ? Json(json["steps"].size()) : Json(nullptr);
   json["settled"] = report.contains("simulation") ? Json(!json["rest_time_s"].is_null()) : Json(nullptr);
-  for (const char* key : {"duration_s", "frames", "keys"}) json[key] = value_at(report, {"clip", key});
   return json;
 }
 
@@ -190,6 +180,13 @@ std::optional<Json> report_beside(const fs::path& folder, const fs::path& path) 
   return *json;
 }
 
+/// Its own name, also of "." and "hits/".
+std::string name_of_folder(const fs::path& folder) {
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(folder, error);
+  return (error ? folder : whole).filename().string();
+}
+
 ReviewSource source_of_files(const fs::path& folder, const fs::path& stem,
                              const std::vector<std::string>& outputs, Diagnostics& diagnostics) {
   ReviewSource source;
@@ -197,7 +194,7 @@ ReviewSource source_of_files(const fs::path& folder, const fs::path& stem,
   source.outputs = outputs;
   source.clip = clip_among(outputs);
   const fs::path parent = stem.parent_path();
-  source.character = parent.empty() ? std::string() : parent.filename().string();
+  source.character = parent.empty() ? name_of_folder(folder) : parent.filename().string();
   if (const auto report = report_beside(folder, stem.string() + ".json")) {
     source.report = stem.string() + ".json";
     source.character = fs::path(text_at(*report, {"character"})).stem().string();

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
+
+#include "base/quantile.h"
 
 namespace ukemi {
 namespace {
@@ -64,9 +67,7 @@ void Recorder::hash_state() {
         s.rotation.x(),        s.rotation.y(),        s.rotation.z(),         s.linear_velocity.x(),
         s.linear_velocity.y(), s.linear_velocity.z(), s.angular_velocity.x(), s.angular_velocity.y(),
         s.angular_velocity.z()};
-    std::array<unsigned char, sizeof numbers> bytes;
-    std::memcpy(bytes.data(), numbers.data(), sizeof numbers);
-    for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 1099511628211ull;
+    hash_.add(std::span(reinterpret_cast<const std::uint8_t*>(numbers.data()), sizeof numbers));
   }
 }
 
@@ -136,13 +137,7 @@ LimitFigures Recorder::limits(bool projected) const {
   result.worst_joint = worst_;
   result.projected = projected;
   result.excess_projected_max_deg = degrees(projected_max_);
-  const auto above = static_cast<std::size_t>(std::floor(0.001 * static_cast<double>(samples_)));
-  if (above < outside_.size()) {
-    std::vector<double> sorted = outside_;
-    const auto nth = sorted.begin() + static_cast<std::ptrdiff_t>(above);
-    std::nth_element(sorted.begin(), nth, sorted.end(), std::greater<>());
-    result.excess_p999_deg = degrees(*nth);
-  }
+  result.excess_p999_deg = degrees(exceeded_by(outside_, samples_, 0.001));
   return result;
 }
 
@@ -154,7 +149,7 @@ SimulationFigures Recorder::figures() const {
     result.jitter_rad_s =
         root_mean_square_turning(turning_.back().time_s - kJitterSpan_s, turning_.back().time_s);
   result.turning_mean_rad_s = root_mean_square_turning(0.0, kAfterBlow_s + 1e-9);
-  result.hash = fmt::format("{:016x}", hash_);
+  result.hash = fmt::format("{:016x}", hash_.value());
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/fnv.h"
 #include "physics/collision.h"
 #include "physics/model.h"
 #include "physics/senses.h"
@@ -65,7 +66,7 @@ class Recorder {
   std::vector<Turning> turning_;
   PerSegment<bool> stood_{};  // on the floor at the start
   std::optional<Senses> before_;
-  std::uint64_t hash_ = 14695981039346656037ull;  // FNV-1a
+  Fnv hash_;
 };
 
 }  // namespace ukemi

@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include "base/parallel.h"
+#include "base/quantile.h"
 #include "base/random.h"
 
 namespace ukemi {
@@ -68,15 +69,6 @@ Result<std::vector<Run>> run_hits(const Comparison& comparison, const Method& me
   return runs;
 }
 
-/// The value that a share of 0.001 of `samples` lies above; `excesses` holds those above 0.
-double p999_deg(std::vector<double>& excesses, long samples) {
-  const auto above = static_cast<std::size_t>(std::floor(0.001 * static_cast<double>(samples)));
-  if (above >= excesses.size()) return 0.0;
-  const auto nth = excesses.begin() + static_cast<std::ptrdiff_t>(above);
-  std::nth_element(excesses.begin(), nth, excesses.end(), std::greater<>());
-  return degrees(*nth);
-}
-
 MethodFigures figures_of(const Method& method, const std::vector<Run>& runs) {
   MethodFigures sum;
   sum.method = method;
@@ -110,7 +102,7 @@ MethodFigures figures_of(const Method& method, const std::vector<Run>& runs) {
     sum.airborne_mean_s += run.figures.airborne_mean_s;
     sum.turning_mean_rad_s += run.figures.turning_mean_rad_s;
   }
-  sum.excess_p999_deg = p999_deg(excesses, sum.samples);
+  sum.excess_p999_deg = degrees(exceeded_by(std::move(excesses), sum.samples, 0.001));
   sum.angular_momentum_mean_kg_m2_s /= std::max(whole, 1);
   sum.airborne_mean_s /= std::max(whole, 1);
   sum.turning_mean_rad_s /= std::max(whole, 1);

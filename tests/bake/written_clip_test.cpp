@@ -6,8 +6,10 @@
 
 #include "bake/bake.h"
 #include "check/difference.h"
+#include "clip/frames.h"
 #include "judge/rom_figures.h"
 #include "load/load.h"
+#include "support/extra_data.h"
 
 namespace ukemi {
 namespace {
@@ -254,6 +256,56 @@ TEST(WrittenClip, OneFigureOfTwoMovesAsItDoesAlone) {
   const Written of_two = written(public_fault("two_figures.gltf"), settings, "hit.glb", said);
   EXPECT_EQ(alone.baked.outcome.figures.hash, of_two.baked.outcome.figures.hash);
   EXPECT_FALSE(said.warnings().empty());
+}
+
+/// Largest excess of the written clip over its range, degrees, as `rom --check` tells it.
+double written_excess_deg(const Written& written) {
+  Diagnostics said;
+  const auto humanoid = map_humanoid(written.file, {}, said);
+  if (!humanoid) throw std::runtime_error(humanoid.error().message());
+  const ClipToCheck clip{&written.file, written.file.animations.size() - 1, {}};
+  return rom_figures(rom_paths(clip, *humanoid, *load_range_of_motion("human"))).excess_max_deg;
+}
+
+TEST(WrittenClip, ABvhCarriesTheRangeAndTheSidesOfItsBake) {
+  Diagnostics said;
+  BakeSettings settings;
+  settings.simulation.duration_s = 1.0;
+  const Character mirrored = public_fault("mirrored.gltf");
+  const Written bvh = written(mirrored, settings, "a.bvh", said),
+                glb = written(mirrored, settings, "a.glb", said);
+  EXPECT_LT(written_excess_deg(bvh), 0.1);
+  EXPECT_LT(written_excess_deg(glb), 0.1);
+  const auto sides = map_humanoid(bvh.file, {}, said);
+  ASSERT_TRUE(sides);
+  for (const Segment s : {Segment::hand_l, Segment::foot_l, Segment::hand_r, Segment::foot_r})
+    EXPECT_EQ(bvh.file.skeleton.label(sides->segments[index(s)].node()),
+              mirrored.skeleton.label(bvh.baked.outcome.prepared.humanoid.segments[index(s)].node()))
+        << name(s);
+  EXPECT_EQ(sides->segments[index(Segment::hand_l)].by, "bake");
+  const auto marks = marks_in_extras(bvh.file.animations.back().extras_json);
+  EXPECT_EQ(marks.size(), bvh.baked.outcome.timeline.clip.marks.size());
+  EXPECT_GE(marks.size(), 2u);
+}
+
+TEST(WrittenClip, OfEveryCharacterIsWithinItsRangeInBothFormats) {
+  const auto folder = extra_data();
+  if (!folder) GTEST_SKIP() << kNoExtraData;
+  int looked_at = 0;
+  for (const ExtraFile& file : extra_files(*folder)) {
+    if (file.verdict != "humanoid") continue;
+    SCOPED_TRACE(file.file);
+    Diagnostics said;
+    const auto character = load_character(*folder / file.file, {}, said);
+    if (!character || !map_humanoid(*character, {}, said)) continue;  // see tests/humanoid
+    BakeSettings settings;
+    settings.simulation.duration_s = 1.0;
+    for (const char* output : {"a.glb", "a.bvh"}) {
+      EXPECT_LE(written_excess_deg(written(*character, settings, output, said)), 1.0) << output;
+      ++looked_at;
+    }
+  }
+  EXPECT_GE(looked_at, 120);
 }
 
 }  // namespace

@@ -21,6 +21,17 @@ TEST(Segments, GoByTheirNamesAndByThoseOfArtistsAndEngines) {
                                                     {"L_Foot", Segment::foot_l},
                                                     {"leftShoulder", Segment::clavicle_l},
                                                     {"right hand", Segment::hand_r},
+                                                    {"Chest", Segment::chest},
+                                                    {"Neck", Segment::head},
+                                                    {"gut", Segment::abdomen},
+                                                    {"LeftToes", Segment::foot_l},
+                                                    {"ball_r", Segment::foot_r},
+                                                    {"neck_01", Segment::head},
+                                                    {"spine_01", Segment::abdomen},
+                                                    {"spine_03", Segment::chest},
+                                                    {"J_Bip_C_Hips", Segment::pelvis},
+                                                    {"J_Bip_L_UpperArm", Segment::upperarm_l},
+                                                    {"mixamorig:Spine", Segment::abdomen},
                                                     {"thigh_r", Segment::thigh_r}};
   for (const auto& [text, segment] : kCases) EXPECT_EQ(segment_named(text), segment) << text;
 }

@@ -14,35 +14,6 @@
 namespace ukemi {
 namespace {
 
-std::vector<double> sine(double frequency_hz, double rate_hz, std::size_t count) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < count; ++i)
-    values.push_back(std::sin(2.0 * kPi * frequency_hz * static_cast<double>(i) / rate_hz));
-  return values;
-}
-
-TEST(JointSpeeds, TheFilterHalvesItsCutoffWithoutDelay) {
-  const std::vector<double> slow = sine(1.0, 120.0, 240), edge = sine(12.0, 120.0, 240);
-  const std::vector<double> slow_filtered = low_pass(slow, 120.0, 12.0);
-  const std::vector<double> edge_filtered = low_pass(edge, 120.0, 12.0);
-  for (std::size_t i = 60; i < 180; ++i) {
-    EXPECT_NEAR(slow_filtered[i], slow[i], 0.001) << i;
-    EXPECT_NEAR(edge_filtered[i], 0.5 * edge[i], 0.001) << i;
-  }
-  const std::vector<double> still(30, 2.5);
-  for (const double value : low_pass(still, 30.0, 12.0)) EXPECT_NEAR(value, 2.5, 1e-12);
-}
-
-TEST(JointSpeeds, APercentileIsAValueOfTheSample) {
-  std::vector<TimedValue> values;
-  for (int i = 200; i >= 1; --i) values.push_back({static_cast<double>(i), 0.01});
-  EXPECT_EQ(percentile(values, 0.99), 198.0);
-  EXPECT_EQ(percentile(values, 1.0), 200.0);
-  EXPECT_EQ(percentile({{7.0, 1.0}}, 0.5), 7.0);
-  EXPECT_EQ(percentile({{1.0, 3.0}, {2.0, 1.0}}, 0.5), 1.0) << "by time, not by count";
-  EXPECT_EQ(percentile({}, 0.5), 0.0);
-}
-
 /// The mannequin with its map, and the human region.
 struct Stage {
   Character character;

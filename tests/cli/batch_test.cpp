@@ -238,7 +238,9 @@ TEST_F(Batch, FailuresCostTheirReactionAloneAndAreListed) {
   const Ran ran = batch("out");
   EXPECT_EQ(ran.status, 1);
   EXPECT_NE(ran.out.find("8 done, 0 rejected, 8 failed"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("failed bad/head_left_0: "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("failed bad/head_left_0 and 7 more of this character: "), std::string::npos)
+      << ran.out;
+  EXPECT_EQ(ran.out.find("failed bad/", ran.out.find("failed bad/") + 1), std::string::npos) << "said twice";
   const Json failed = manifest("out")["reactions"].back();
   EXPECT_EQ(failed["status"], "failed");
   EXPECT_TRUE(failed["error"].is_string());
@@ -492,6 +494,26 @@ TEST_F(Batch, TheSettingsComeAsData) {
   EXPECT_EQ(json["settings"][0]["name"], "hit");
   EXPECT_EQ(json["settings"][0]["default"], "chest");
   EXPECT_NE(json["settings"][0]["choices"], nullptr);
+}
+
+TEST_F(Batch, ADryRunSaysWhatIsWrongWithACharacterOnce) {
+  write("bad.bvh", "HIERARCHY\nROOT");
+  const std::string begin = "format = 1\ncharacters = [\"mannequin\", \"bad.bvh\"]\n";
+  const std::string matrix = "[[matrix]]\nhit = [\"head\", \"chest\"]\nfrom = [\"front\", \"back\"]\n";
+  write("r.toml", begin + matrix);
+  Ran ran = run({"batch", "r.toml", "-o", "out", "--dry-run"});
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_NE(ran.err.find("(stops 4 reactions of 'bad')"), std::string::npos) << ran.err;
+  EXPECT_EQ(ran.err.find("error"), ran.err.rfind("error")) << "said once: " << ran.err;
+  EXPECT_NE(ran.out.find("8 to bake"), std::string::npos) << ran.out;
+  for (const auto& [setting, word] :
+       {std::pair("clip = \"nosuch\"\n", "nosuch"), {"map = [\"head=Nobody\"]\n", "Nobody"}}) {
+    write("r.toml", std::string("format = 1\ncharacters = [\"mannequin\"]\n[settings]\n") + setting + matrix);
+    ran = run({"batch", "r.toml", "-o", "out", "--dry-run"});
+    EXPECT_EQ(ran.status, 1) << word;
+    EXPECT_NE(ran.err.find(word), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("(stops 4 reactions of 'mannequin')"), std::string::npos) << ran.err;
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "clip/extras.h"
 #include "judge/rom_figures.h"
 
 namespace ukemi {
@@ -62,6 +63,36 @@ TEST(Frames, RangesThatAreNotTheHumanOnesComeBackFromTheExtras) {
     EXPECT_EQ(range_in_extras(*human, bad).joints[index(Joint::elbow_l)].polygon,
               human->joints[index(Joint::elbow_l)].polygon)
         << bad;
+}
+
+TEST(Frames, OfASkeletonWithOtherAxesGiveTheSameSegments) {
+  const Puppet puppet;
+  const Pose pose = rest_pose(puppet.skeleton);
+  BodyPose segments{};
+  for (int i = 0; i < kSegmentCount; ++i) segments[i].rotation = exp_rotation(Vec3(0.1 * i, 0.2, -0.05 * i));
+  const SegmentFrames frames = segment_frames(puppet.skeleton, puppet.humanoid, pose, segments);
+  Skeleton second = puppet.skeleton;  // stands in another world, with bones that have other axes
+  const Quat turn = exp_rotation(Vec3(0.3, -0.4, 0.5));
+  for (Node& node : second.nodes) node.rest.rotation = exp_rotation(Vec3(0.2, 0.7, 0.1)) * node.rest.rotation;
+  std::vector<int> nodes;
+  for (int i = 0; i < second.size(); ++i) nodes.push_back(i);
+  const SegmentFrames moved =
+      moved_frames(puppet.skeleton, frames, pose, turn, nodes, second, rest_pose(second));
+  const auto first = rotations_of(puppet.skeleton, frames, pose);
+  const auto other = rotations_of(second, moved, rest_pose(second));
+  for (int i = 0; i < kSegmentCount; ++i) EXPECT_LT(angle_between(other[i], turn * first[i]), 1e-9) << i;
+  nodes.pop_back();
+  nodes.assign(nodes.size(), -5);
+  EXPECT_EQ(moved_frames(puppet.skeleton, frames, pose, turn, nodes, second, pose).node[0], -1);
+}
+
+TEST(Frames, TheRateOfTheBakeGoesBesideThem) {
+  const Puppet puppet;
+  const std::string extras = animation_extras(puppet.skeleton, {}, {{"impact", 0.25}}, ClipFacts{});
+  EXPECT_EQ(extras.find("fps"), std::string::npos);
+  const std::string told = with_fps(extras, 30.0);
+  EXPECT_NE(told.find(R"("fps":30.0)"), std::string::npos) << told;
+  EXPECT_EQ(marks_in_extras(told).size(), 1u);
 }
 
 TEST(Frames, OfOtherExtrasAreNone) {

@@ -8,6 +8,7 @@
 #include "base/files.h"
 #include "export/export.h"
 #include "export/puppet.h"
+#include "export/stick_mesh.h"
 #include "load/load.h"
 
 namespace ukemi {
@@ -312,6 +313,21 @@ TEST(WriteGlb, KeepsTheSkinsOfAClipAloneSoThatItsNodesAreBones) {
   EXPECT_EQ(glb.json["nodes"][3], Json::parse(R"({"name":"hat","extras":5})"));
 }
 
+TEST(WriteGlb, MakesBonesOfTheNodesOfAClipAloneWhereTheSourceHadNoSkin) {
+  for (const SourceFormat format : {SourceFormat::bvh, SourceFormat::assimp, SourceFormat::gltf}) {
+    Character character = from_json(R"({"asset":{"version":"2.0"},
+"nodes":[{"name":"hip","children":[1]},{"name":"tip"}]})",
+                                    {{}}, true, 2);
+    character.format = format;
+    GltfOptions options;
+    options.clip_only = true;
+    const Glb glb = parse_glb(*write_glb(character, {}, turn_of(0), options));
+    EXPECT_EQ(glb.json.contains("skins"), format != SourceFormat::gltf);
+    if (format == SourceFormat::gltf) continue;
+    EXPECT_EQ(glb.json["skins"][0]["joints"], Json::parse("[0,1]"));
+  }
+}
+
 TEST(WriteGlb, RefusesADocumentThatIsNotTheSkeletons) {
   EXPECT_FALSE(write_glb(from_json("{\"nodes\":[]}", {}, true, 1), {}, turn_of(0), {}));
   EXPECT_FALSE(write_glb(from_json("not json", {}, true, 1), {}, turn_of(0), {}));
@@ -399,6 +415,34 @@ TEST(WriteGlb, ShowsABvhAsAFigureInMetres) {
     const Vec3 n(normals[3 * v], normals[3 * v + 1], normals[3 * v + 2]);
     EXPECT_GT(n.dot(p - middle), 0.0) << "normals point outwards";
   }
+}
+
+TEST(StickMesh, HasNoSpikeFromTheSceneToTheHipsAndNoSlivers) {
+  Character character;
+  const auto add = [&](const char* name, int parent, const Vec3& place) {
+    Node node;
+    node.name = name;
+    node.parent = parent;
+    node.rest.translation = place;
+    character.skeleton.nodes.push_back(node);
+  };
+  add("Scene", -1, Vec3(0, 0, 0));
+  add("Hips", 0, Vec3(500, 100, 0));
+  add("Spine", 1, Vec3(0, 5, 0));
+  add("Head", 2, Vec3(0, 60, 0));
+  ASSERT_TRUE(character.skeleton.sort());
+  Humanoid humanoid;
+  humanoid.root = 1;
+  const StickMesh mesh = make_stick_mesh(character, humanoid);
+  ASSERT_FALSE(mesh.positions.empty());
+  double nearest_x = 500.0, spine_width = 0.0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    nearest_x = std::min(nearest_x, static_cast<double>(mesh.positions[v].x()));
+    if (mesh.nodes[v] == 1) spine_width = std::max(spine_width, std::abs(mesh.positions[v].x() - 500.0));
+  }
+  EXPECT_GT(nearest_x, 490.0) << "no bone from the origin";
+  EXPECT_NEAR(spine_width, 0.012 * 95.0, 0.012 * 95.0 * 0.5);  // 13 % of its length would be 0.65
+  EXPECT_GT(spine_width, 0.7);
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 // differ from it in one thing.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+
 #include "humanoid/humanoid.h"
 #include "load/load.h"
 
@@ -161,6 +164,71 @@ TEST(PublicFaults, BonesSideBySideAreRefusedWithTheRelationThatFails) {
 
 TEST(PublicFaults, AFrameTimeInMillisecondsIsSaid) {
   EXPECT_NE(mapped("frame_time_ms.bvh").warnings().find("less than one frame a second"), std::string::npos);
+}
+
+/// figure.gltf with some inverse bind matrices changed.
+Mapped with_bind_pose(const std::function<void(std::size_t joint, Affine& inverse_bind)>& change) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  EXPECT_TRUE(character);
+  for (Skin& skin : character->skins)
+    for (std::size_t j = 0; j < skin.inverse_bind.size(); ++j) change(j, skin.inverse_bind[j]);
+  auto humanoid = map_humanoid(*character, {}, diagnostics);
+  return {std::move(*character), std::move(humanoid), std::move(diagnostics)};
+}
+
+TEST(PublicFaults, ABindPoseOfAnotherSkeletonIsSaidAndTheHeightIsThatOfTheBones) {
+  const auto far = [](std::size_t, Affine& bind) { bind = bind * Eigen::Translation3d(0.0, -30.0, 0.0); };
+  const auto one = [](std::size_t joint, Affine& bind) {
+    if (joint == 4) bind = bind * Eigen::Translation3d(0.0, -3.0, 0.0);
+  };
+  const auto scattered = [](std::size_t joint, Affine& bind) {
+    const double angle = 2.4 * static_cast<double>(joint);
+    bind = bind * Eigen::Translation3d(3.0 * std::cos(angle), 1.0, 3.0 * std::sin(angle));
+  };
+  for (const auto& change : {std::function<void(std::size_t, Affine&)>(far), {one}, {scattered}}) {
+    const Mapped m = with_bind_pose(change);
+    ASSERT_TRUE(m.humanoid);
+    EXPECT_NE(m.warnings().find("the bind pose of the skin does not fit the skeleton"), std::string::npos)
+        << m.warnings();
+    EXPECT_NEAR(m.humanoid->height_m, 1.7, 0.1);
+  }
+  const Mapped plain = with_bind_pose([](std::size_t, Affine&) {});
+  EXPECT_EQ(plain.warnings(), "");
+}
+
+TEST(PublicFaults, AThumbTurnsWithAHandOfTwoBonesInOnePlace) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  character->parts.clear();
+  character->skins.clear();
+  Skeleton& skeleton = character->skeleton;
+  const int hand = skeleton.find("LeftHand");
+  for (const char* name : {"LeftFingerBase", "LThumb"}) {  // as in the CMU rigs
+    Node node;
+    node.name = name;
+    node.parent = hand;
+    skeleton.nodes.push_back(node);
+  }
+  ASSERT_TRUE(skeleton.sort());
+  const auto humanoid = map_humanoid(*character, {}, diagnostics);
+  ASSERT_TRUE(humanoid) << humanoid.error().message();
+  ASSERT_EQ(humanoid->segments[index(Segment::hand_l)].chain.size(), 2u);
+  const Pose rest = rest_pose(skeleton);
+  const BodyPose from = segments_of(skeleton, *humanoid, rest);
+  BodyPose to = from;
+  const Quat turn = exp_rotation(Vec3(0.3, 0.8, -0.4));
+  to[index(Segment::hand_l)].rotation = turn * from[index(Segment::hand_l)].rotation;
+  const auto before = world_transforms(skeleton, rest);
+  const auto after = world_transforms(skeleton, pose_skeleton(skeleton, *humanoid, rest, from, to));
+  for (const char* name : {"LeftFingerBase", "LThumb"}) {
+    const auto node = static_cast<std::size_t>(skeleton.find(name));
+    const Quat turned = rotation_part(after[node].linear() * before[node].linear().inverse());
+    EXPECT_LT(angle_between(turned, turn), 1e-6) << name;
+  }
 }
 
 }  // namespace

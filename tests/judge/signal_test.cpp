@@ -48,12 +48,5 @@ TEST(Signal, RatesAreExactForParabolas) {
   for (int f = 1; f < 9; ++f) EXPECT_NEAR(rates[f].y(), f / kFps, 1e-12);
 }
 
-TEST(Signal, QuantilesLieBetweenValues) {
-  EXPECT_EQ(quantile({}, 0.5), 0.0);
-  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.5), 2.0);
-  EXPECT_DOUBLE_EQ(quantile({1.0, 2.0}, 0.25), 1.25);
-  EXPECT_EQ(quantile({1.0, 2.0, 5.0}, 1.0), 5.0);
-}
-
 }  // namespace
 }  // namespace ukemi

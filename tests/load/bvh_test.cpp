@@ -284,5 +284,21 @@ TEST(Bvh, WritesAGltfDocumentOfTheSkeleton) {
             R"({"name":"Left Arm","translation":[0.0,10.0,0.0]}]})");
 }
 
+TEST(Bvh, ReadsWhatABakeSaysOfItsClip) {
+  const std::string extras = R"({"ukemi": {"root_motion": "hips"}})";
+  const std::string mark = "clip=eyJ1a2VtaSI6IHsicm9vdF9tb3Rpb24iOiAiaGlwcyJ9fQ==";
+  for (const std::string before : {"", "unit=0.01m,up=y,"}) {
+    const auto c = read(replaced(kHierarchy, "End Site", "End Site " + before + mark) + kMotion);
+    ASSERT_TRUE(c) << c.error().message();
+    EXPECT_EQ(c->animations.at(0).extras_json, extras);
+    EXPECT_EQ(c->metres_per_unit.has_value(), !before.empty());
+  }
+  for (const char* name : {"End Site", "End Site clip", "End Site clip=e*yJ", "End Site clips=eyJ1"}) {
+    const auto c = read(replaced(kHierarchy, "End Site", name) + kMotion);
+    ASSERT_TRUE(c) << name;
+    EXPECT_EQ(c->animations.at(0).extras_json, "") << name;
+  }
+}
+
 }  // namespace
 }  // namespace ukemi

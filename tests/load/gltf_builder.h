@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/base64.h"
 #include "load/load.h"
 
 namespace ukemi::test {
@@ -17,18 +18,6 @@ using Bytes = std::vector<std::uint8_t>;
 
 inline void append_word(Bytes& bytes, std::uint32_t word) {
   for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(word >> shift));
-}
-
-inline std::string base64(std::span<const std::uint8_t> bytes) {
-  static const char* kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto at = [&](std::size_t k) { return i + k < bytes.size() ? bytes[i + k] : 0u; };
-    const std::uint32_t bits = at(0) << 16 | at(1) << 8 | at(2);
-    for (int k = 0; k < 4; ++k)
-      text += i + static_cast<std::size_t>(k) > bytes.size() ? '=' : kAlphabet[bits >> (18 - 6 * k) & 63];
-  }
-  return text;
 }
 
 /// A document with one buffer.

@@ -53,6 +53,10 @@ TEST(Direction, RefusesWhatIsNone) {
     EXPECT_FALSE(direction.error().fix.empty());
   }
   EXPECT_EQ(parse_direction("frnt").error().fix, "did you mean 'front'?");
+  for (const auto& [word, degrees_] :
+       {std::pair("front_left", 45.0), {"back-left", 135.0}, {"back_right", -135.0}, {"front-right", -45.0}})
+    EXPECT_NEAR(degrees(parse_direction(word)->azimuth), degrees_, 1e-12) << word;
+  EXPECT_EQ(parse_direction("front-left")->text, "front_left");
 }
 
 TEST(Presets, OfTheProgramLoadInTheirOrder) {
@@ -208,6 +212,8 @@ TEST(Scene, RefusesUnknownWordsWithTheNearest) {
   EXPECT_EQ(scene_of(settings, BodyPose{}).error().fix, "did you mean 'punch'?");
   EXPECT_EQ(parse_segment("chset").error().what, "unknown segment 'chset'");
   EXPECT_EQ(parse_segment("chset").error().fix, "did you mean 'chest'?");
+  EXPECT_EQ(parse_segment("upper leg").error().what, "'upper leg' does not say which side");
+  EXPECT_EQ(parse_segment("upper leg").error().fix, "write 'thigh_l' or 'thigh_r'");
   EXPECT_EQ(parse_scene("slop").error().what, "unknown scene 'slop'");
 }
 

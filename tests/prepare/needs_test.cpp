@@ -49,6 +49,10 @@ TEST(Needs, OfFilesAreThoseOfTheirFormats) {
   settings.outputs = {"a.glb"};
   EXPECT_EQ(idle_settings(settings, SceneKind::ball),
             Said{"--bvh-unit has no effect without a BVH to write"});
+  settings.all_joints = true;
+  settings.outputs = {"a.fbx"};
+  EXPECT_EQ(idle_settings(settings, SceneKind::ball).front(),
+            "--all-joints has no effect without a glTF to write");
   settings.outputs = {"a.glb", "a.bvh"};
   EXPECT_EQ(idle_settings(settings, SceneKind::ball), Said{});
 }

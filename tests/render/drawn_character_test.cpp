@@ -54,6 +54,18 @@ TEST(DrawnCharacter, stands_in_metres_with_y_up) {
   EXPECT_LT((figure.joints(0)[1] - Vec3(0.0, 0.0, -0.01)).norm(), 1e-12);
 }
 
+TEST(DrawnCharacter, shows_the_bones_beside_a_mesh_that_shows_little) {
+  Arm arm;
+  arm.character.parts[0].node = 0;
+  const std::size_t whole = DrawnCharacter(arm.shot, {}).body(0).vertices.size();
+  EXPECT_EQ(whole, 3u) << "the mesh alone";
+  for (Eigen::Vector3f& p : arm.character.parts[0].positions) p *= 0.001f;
+  arm.character.skins.clear();
+  arm.character.parts[0].skin = -1;
+  arm.character.parts[0].positions[1].x() += 0.5f;
+  EXPECT_GT(DrawnCharacter(arm.shot, {}).body(0).vertices.size(), whole) << "a sliver";
+}
+
 TEST(DrawnCharacter, hangs_rigid_parts_on_their_nodes) {
   Arm arm;
   arm.character.parts[0].skin = -1;

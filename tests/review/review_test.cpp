@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/bake.h"
+#include "base/base64.h"
 #include "base/files.h"
 #include "clip/frames.h"
-#include "export/container.h"
 #include "judge/rom_figures.h"
 #include "load/load.h"
 #include "review/clip.h"
@@ -214,6 +214,18 @@ TEST_F(Reviewed, APageThatWasCutShortIsMadeAnew) {
   EXPECT_FALSE(fs::exists(folder / "review/clips/half.js"));
 }
 
+TEST_F(Reviewed, ClipsOfAPlainFolderGoByItsName) {
+  fs::create_directories(folder / "hero");
+  fs::copy_file(folder / "mannequin" / "head.glb", folder / "hero" / "head.glb");
+  Diagnostics said;
+  for (const fs::path& named : {folder / "hero", folder / "hero" / ""}) {
+    const auto sources = review_sources(named, said);
+    ASSERT_TRUE(sources) << sources.error().message();
+    ASSERT_EQ(sources->reactions.size(), 1u);
+    EXPECT_EQ(sources->reactions[0].character, "hero");
+  }
+}
+
 TEST_F(Reviewed, RefusesWhatIsNoBatch) {
   write("manifest.json", "[]");
   EXPECT_NE(refusal().find("is not a JSON object"), std::string::npos);
@@ -230,9 +242,9 @@ TEST_F(Reviewed, RefusesWhatIsNoBatch) {
 
 template <typename Number>
 std::vector<Number> unpacked(const Json& text) {
-  const auto bytes = data_of("data:;base64," + text.get<std::string>());
-  std::vector<Number> values(bytes->size() / sizeof(Number));
-  std::memcpy(values.data(), bytes->data(), values.size() * sizeof(Number));
+  const std::vector<std::uint8_t> bytes = base64_decoded(text.get<std::string>()).bytes;
+  std::vector<Number> values(bytes.size() / sizeof(Number));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(Number));
   return values;
 }
 
