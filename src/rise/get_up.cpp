@@ -42,6 +42,7 @@ const Vec3 kX = Vec3::UnitX(), kY = Vec3::UnitY(), kZ = Vec3::UnitZ();
 
 const double kMargin = radians(1.0);    // inside the ranges
 constexpr double kClearance_m = 0.012;  // of skin on its way over the floor
+constexpr double kInside = 0.02;        // of the height: of the weight, from the corners of its support
 
 double smooth_step(double x) {
   x = std::clamp(x, 0.0, 1.0);
@@ -150,7 +151,7 @@ struct PlannedKey {
   FigurePose figure;
   std::array<bool, kContacts> on{};
   std::array<Rigid, kContacts> pin{};  // of the contact's segment
-  double leniency_m = 0.0;
+  bool lies = false;                   // other parts bear too
   bool keeps_body = false;
 };
 
@@ -181,7 +182,11 @@ class Planner {
   void place_likeness(const KeyPose& key, const PlannedKey& next, PoseGoals& goals) const;
   PoseGoals with_contacts(PoseGoals goals, const PlannedKey& next,
                           const std::array<bool, kContacts>& placed) const;
-  void solve_key(const KeyPose& key);
+  void solve_key(const KeyPose& key, const PlannedKey& following);
+  std::vector<std::vector<Vec2>> supports_of(const PlannedKey& next, const PlannedKey& following,
+                                             const std::array<bool, kContacts>& placed,
+                                             const FigurePose& figure) const;
+  PlannedKey touching(const KeyPose& key) const;
   void start_lying(const Route& route, bool knees_free);
   void end_standing(double rise_s);
   std::vector<PlantedPart> planted_parts() const;
@@ -201,6 +206,12 @@ class Planner {
   PoseGoals balanced_goals(int frame, const FigurePose& reference, const Vec2& balance,
                            double likeness) const;
   PoseGoals goals_at(double time_s, const FigurePose& reference, double likeness) const;
+  double stays_s(int i) const;
+  std::optional<int> steps_to(int contact, int i) const;
+  bool steps_from(int contact, int i) const;
+  void add_swing(int from, int to, int i, double time_s, PoseGoals& goals) const;
+  void add_on_the_way(int contact, int i, double time_s, const BodyPose& alike, PoseGoals& goals) const;
+  double unhurried_s(const PlannedKey& from, const PlannedKey& to) const;
 
   double end_s() const { return keys_.back().time_s; }
   int interval(double time_s) const {
@@ -365,22 +376,41 @@ PoseGoals Planner::with_contacts(PoseGoals goals, const PlannedKey& next,
   return goals;
 }
 
-/// Twice: where new feet come down decides where the body will stand, and that where exactly they go.
-void Planner::solve_key(const KeyPose& key) {
+PlannedKey Planner::touching(const KeyPose& key) const {
+  PlannedKey planned;
+  planned.on = touches_of(key);
+  planned.lies = (key.touches & kBody) != 0;
+  planned.keeps_body = key.keeps_body;
+  return planned;
+}
+
+/// Where the weight lies at a key: over what bore it on the way there, and over what will bear it on the way
+/// to the following. So it is shifted before a part lifts.
+std::vector<std::vector<Vec2>> Planner::supports_of(const PlannedKey& next, const PlannedKey& following,
+                                                    const std::array<bool, kContacts>& placed,
+                                                    const FigurePose& figure) const {
+  const double margin = kInside * whole_.body().height_m;
+  std::vector<std::vector<Vec2>> supports;
+  if (!keys_.back().lies) supports.push_back(drawn_in(support(keys_.back(), next), margin));
+  const BodyPose segments = whole_.segments(figure);
+  PlannedKey now = next;
+  for (int c = 0; c < kContacts; ++c)
+    if (!placed[c]) now.pin[c] = segments[index(segment_of(c))];
+  if (!(next.lies && following.lies)) supports.push_back(drawn_in(support(now, following), margin));
+  return supports;
+}
+
+/// Again and again: where new feet come down decides where the body will stand, and that where exactly they
+/// go; where hands and knees come down decides what there is to lean on.
+void Planner::solve_key(const KeyPose& key, const PlannedKey& following) {
   const PlannedKey& last = keys_.back();
-  PlannedKey next;
-  next.on = touches_of(key);
-  next.leniency_m = key.leniency_m;
-  next.keeps_body = key.keeps_body;
+  PlannedKey next = touching(key);
   std::array<bool, kContacts> placed{};
   for (int c = 0; c < kContacts; ++c)
     if (next.on[c] && last.on[c]) placed[c] = true, next.pin[c] = last.pin[c];
   PoseGoals goals = likeness_goals(key);
   place_likeness(key, next, goals);
-  if (keys_.size() > 1) {
-    goals.support = drawn_in(support(last, next), 0.02 * whole_.body().height_m - key.leniency_m);
-    goals.support_weight = 60.0;
-  }
+  goals.support_weight = 120.0;
   FigurePose figure = whole_.reach(with_contacts(goals, next, placed), goals.likeness, 25);
   for (const bool left : {true, false}) {
     const int c = contact_index(foot, left);
@@ -389,7 +419,10 @@ void Planner::solve_key(const KeyPose& key) {
     placed[c] = true;
     next.pin[c] = standing_[index(segment_of(c))];
   }
-  figure = whole_.reach(with_contacts(goals, next, placed), figure, 15);
+  for (int round = 0; round < 3; ++round) {
+    goals.supports = supports_of(next, following, placed, figure);
+    figure = whole_.reach(with_contacts(goals, next, placed), figure, 15);
+  }
   const BodyPose segments = whole_.segments(figure);
   for (int c = 0; c < kContacts; ++c)
     if (next.on[c] && !placed[c]) next.pin[c] = segments[index(segment_of(c))];
@@ -518,10 +551,68 @@ std::vector<Vec2> Planner::balance_path() const {
   return result;
 }
 
-PoseGoals Planner::goals_at(double time_s, const FigurePose& reference, double likeness) const {
+/// Seconds that a part stays after a key, until the weight has left it.
+double Planner::stays_s(int i) const {
+  return keys_[i].lies ? 0.0 : std::min(0.14, 0.25 * (keys_[i + 1].time_s - keys_[i].time_s));
+}
+
+/// Where the same segment comes down that leaves the floor in an interval: a step.
+std::optional<int> Planner::steps_to(int contact, int i) const {
+  if (!keys_[i].on[contact]) return std::nullopt;
+  for (int c = 0; c < kContacts; ++c)
+    if (c != contact && segment_of(c) == segment_of(contact) && keys_[i + 1].on[c] && !keys_[i].on[c])
+      return c;
+  return std::nullopt;
+}
+
+bool Planner::steps_from(int contact, int i) const {
+  for (int c = 0; c < kContacts; ++c)
+    if (steps_to(c, i) == contact) return true;
+  return false;
+}
+
+/// A step: from one place to the next, lifted, in the time between them.
+void Planner::add_swing(int from, int to, int i, double time_s, PoseGoals& goals) const {
+  constexpr double kLift = 0.04;       // of the height
+  constexpr double kSettles_s = 0.05;  // before the next key
+  const double begins_s = keys_[i].time_s + stays_s(i), ends_s = keys_[i + 1].time_s - kSettles_s;
+  const double share = smooth_step((time_s - begins_s) / (ends_s - begins_s));
+  const Rigid& a = keys_[i].pin[from];
+  const Rigid& b = keys_[i + 1].pin[to];
+  Rigid target{a.rotation.slerp(share, b.rotation), Vec3::Zero()};
+  Vec3 place = (1.0 - share) * (a * points_[from]) + share * (b * points_[to]);
+  place.y() += kLift * whole_.body().height_m * 4.0 * share * (1.0 - share);
+  target.translation = place - target.rotation * points_[to];
+  const double firm = 1.0 - 0.8 * 4.0 * share * (1.0 - share);
+  add_pin(to, target, firm, 0.5 * firm, goals);
+}
+
+/// Drawn out of the last place, into the next.
+void Planner::add_on_the_way(int contact, int i, double time_s, const BodyPose& alike,
+                             PoseGoals& goals) const {
   constexpr double kLongestEase_s = 0.42;
-  constexpr double kStill = 150.0;
   constexpr double kArc = 0.02;  // of the height, by which a part lifts on its way
+  const double span = keys_[i + 1].time_s - keys_[i].time_s;
+  const double ease = std::min(kLongestEase_s, 0.75 * span);
+  const auto partly = [&](const Rigid& pin, double progress) {
+    if (progress <= 0.0) return;
+    const double share = smooth_step(progress);
+    const Rigid& own = alike[index(segment_of(contact))];
+    Rigid target{pin.rotation, Vec3::Zero()};
+    Vec3 place = (1.0 - share) * (own * points_[contact]) + share * (pin * points_[contact]);
+    if (kind_of(contact) != seat) place.y() += kArc * whole_.body().height_m * std::sin(kPi * share);
+    target.translation = place - target.rotation * points_[contact];
+    add_pin(contact, target, growing(progress), growing(progress), goals);
+  };
+  if (keys_[i].on[contact])
+    partly(keys_[i].pin[contact],
+           1.0 - std::max(0.0, time_s - keys_[i].time_s - stays_s(i)) / std::min(0.4, ease));
+  if (keys_[i + 1].on[contact])
+    partly(keys_[i + 1].pin[contact], 1.0 - (keys_[i + 1].time_s - time_s) / ease);
+}
+
+PoseGoals Planner::goals_at(double time_s, const FigurePose& reference, double likeness) const {
+  constexpr double kStill = 150.0;
   PoseGoals goals;
   // A limp body lies with joints at their ends, half a degree beyond.
   goals.margin = radians(-0.5) + (kMargin + radians(0.5)) * smooth_step(time_s / 0.4);
@@ -541,25 +632,12 @@ PoseGoals Planner::goals_at(double time_s, const FigurePose& reference, double l
       goals.likeness_weight[index(j)] = kStill;
   }
   for (int c = 0; c < kContacts; ++c) {
-    if (keys_[i].on[c] && keys_[i + 1].on[c]) {
+    if (keys_[i].on[c] && keys_[i + 1].on[c])
       add_pin(c, keys_[i].pin[c], 1.0, 1.0, goals);
-      continue;
-    }
-    // On the way: drawn out of the last place, into the next.
-    const double span = keys_[i + 1].time_s - keys_[i].time_s;
-    const double ease = std::min(kLongestEase_s, 0.75 * span);
-    const auto partly = [&](const Rigid& pin, double progress) {
-      if (progress <= 0.0) return;
-      const double share = smooth_step(progress);
-      const Rigid& own = alike[index(segment_of(c))];
-      Rigid target{pin.rotation, Vec3::Zero()};
-      Vec3 place = (1.0 - share) * (own * points_[c]) + share * (pin * points_[c]);
-      if (kind_of(c) != seat) place.y() += kArc * whole_.body().height_m * std::sin(kPi * share);
-      target.translation = place - target.rotation * points_[c];
-      add_pin(c, target, growing(progress), growing(progress), goals);
-    };
-    if (keys_[i].on[c]) partly(keys_[i].pin[c], 1.0 - (time_s - keys_[i].time_s) / std::min(0.24, ease));
-    if (keys_[i + 1].on[c]) partly(keys_[i + 1].pin[c], 1.0 - (keys_[i + 1].time_s - time_s) / ease);
+    else if (const auto to = steps_to(c, i))
+      add_swing(c, *to, i, time_s, goals);
+    else if (!steps_from(c, i))
+      add_on_the_way(c, i, time_s, alike, goals);
   }
   for (TouchGoal& goal : goals.touches) goal.height_m = settled * seat_height_;
   return goals;
@@ -570,6 +648,10 @@ PoseGoals Planner::balanced_goals(int frame, const FigurePose& reference, const 
   PoseGoals goals = goals_at(frame / settings_.fps, reference, likeness);
   goals.balance = balance;
   goals.balance_weight = 20.0;
+  const int i = interval(frame / settings_.fps);
+  if (!keys_[i].lies)
+    goals.supports = {drawn_in(support(keys_[i], keys_[i + 1]), 0.5 * kInside * whole_.body().height_m)};
+  goals.support_weight = 120.0;
   goals.floor_weight = 200.0;
   return goals;
 }
@@ -617,18 +699,26 @@ void Planner::fill_frames(GetUp& result) const {
 }
 
 /// The least time from one pose to another: joints and pelvis turn no faster than people's do in get-ups.
-double unhurried_s(const FigurePose& from, const FigurePose& to) {
+double Planner::unhurried_s(const PlannedKey& from, const PlannedKey& to) const {
   constexpr double kJointSpeed = radians(250.0), kPelvisSpeed = radians(170.0);  // means
-  double least = angle_between(from.turn, to.turn) / kPelvisSpeed;
+  const double part_speed = 1.5 * std::sqrt(whole_.body().height_m / 1.75);      // m/s
+  double least = angle_between(from.figure.turn, to.figure.turn) / kPelvisSpeed;
   for (int j = 0; j < kJointCount; ++j)
-    least = std::max(least, angle_between(from.joints[j], to.joints[j]) / kJointSpeed);
+    least = std::max(least, angle_between(from.figure.joints[j], to.figure.joints[j]) / kJointSpeed);
+  const BodyPose was = whole_.segments(from.figure), is = whole_.segments(to.figure);
+  for (int c = 0; c < kContacts; ++c) {
+    const auto s = static_cast<std::size_t>(index(segment_of(c)));
+    if (from.on[c] != to.on[c])
+      least = std::max(least, (is[s] * points_[c] - was[s] * points_[c]).norm() / part_speed);
+  }
   return least;
 }
 
 void Planner::start_lying(const Route& route, bool knees_free) {
   PlannedKey start;
   start.figure = figure_pose(lying_);
-  const double low_m = 0.05 * whole_.body().height_m;
+  start.lies = true;
+  const double low_m = 0.015 * whole_.body().height_m;
   for (const bool left : {true, false}) {
     const int c = contact_index(knee, left);
     start.pin[c] = lying_[index(segment_of(c))];
@@ -678,12 +768,14 @@ GetUp Planner::plan(const Route& route, double heading, const WayRound& side, do
   GetUp result;
   result.fps = settings_.fps;
   result.route = std::string(route.name);
-  for (const KeyPose& key : route.keys) {
+  PlannedKey stands;
+  for (const bool left : {true, false}) stands.on[contact_index(foot, left)] = true;
+  for (std::size_t k = 0; k < route.keys.size(); ++k) {
+    const KeyPose& key = route.keys[k];
     const PlannedKey last = keys_.back();
     if (!key.phase.empty()) result.phases.push_back({std::string(key.phase), last.time_s});
-    solve_key(key);
-    keys_.back().time_s =
-        last.time_s + std::max(tempo * key.seconds, unhurried_s(last.figure, keys_.back().figure));
+    solve_key(key, k + 1 < route.keys.size() ? touching(route.keys[k + 1]) : stands);
+    keys_.back().time_s = last.time_s + std::max(tempo * key.seconds, unhurried_s(last, keys_.back()));
   }
   end_standing(tempo * route.rise_s);
   result.phases.push_back({"stands", keys_.back().time_s});
