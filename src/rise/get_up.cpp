@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "base/random.h"
+#include "body/weight.h"
 #include "rise/get_up_routes.h"
 #include "rise/whole_body.h"
 
@@ -124,6 +125,21 @@ std::array<OuterSkin, kContacts> contact_skins(const WholeBody& whole) {
   return skins;
 }
 
+OuterSkin trunk_skin(const WholeBody& whole) {
+  OuterSkin skin;
+  for (const Segment s :
+       {Segment::pelvis, Segment::abdomen, Segment::chest, Segment::thigh_l, Segment::thigh_r})
+    skin[index(s)] = whole.skin()[index(s)];
+  return skin;
+}
+
+double lowest_of(const OuterSkin& skin, const BodyPose& pose) {
+  double low = std::numeric_limits<double>::infinity();
+  for (int s = 0; s < kSegmentCount; ++s)
+    for (const Vec3& p : skin[s]) low = std::min(low, (pose[s] * p).y());
+  return std::isfinite(low) ? low : 0.0;
+}
+
 /// Corners on the ground of what bears at a contact.
 void add_corners(const WholeBody& whole, int contact, const Rigid& at, const Vec3& point,
                  std::vector<Vec2>& corners) {
@@ -171,7 +187,8 @@ class Planner {
         standing_(standing),
         settings_(settings),
         points_(contact_points(whole)),
-        skins_(contact_skins(whole)) {}
+        skins_(contact_skins(whole)),
+        trunk_(trunk_skin(whole)) {}
 
   GetUp plan(const Route& route, double heading, const WayRound& side, double tempo);
 
@@ -203,12 +220,16 @@ class Planner {
   std::vector<FigurePose> guided(const std::vector<FigurePose>& reference,
                                  const std::vector<Vec2>& balance) const;
   void fill_frames(GetUp& result) const;
+  void mend_balance(const std::vector<FigurePose>& figures, std::vector<Vec2>& balance) const;
+  std::vector<FigurePose> balanced(const std::vector<FigurePose>& guide,
+                                   const std::vector<Vec2>& balance) const;
   PoseGoals balanced_goals(int frame, const FigurePose& reference, const Vec2& balance,
                            double likeness) const;
   PoseGoals goals_at(double time_s, const FigurePose& reference, double likeness) const;
-  double stays_s(int i) const;
+  std::vector<double> stays(const std::vector<Vec2>& balance) const;
   std::optional<int> steps_to(int contact, int i) const;
   bool steps_from(int contact, int i) const;
+  void raise(Segment segment, Rigid& at) const;
   void add_swing(int from, int to, int i, double time_s, PoseGoals& goals) const;
   void add_on_the_way(int contact, int i, double time_s, const BodyPose& alike, PoseGoals& goals) const;
   double unhurried_s(const PlannedKey& from, const PlannedKey& to) const;
@@ -227,11 +248,13 @@ class Planner {
   GetUpSettings settings_;
   ContactPoints points_;
   std::array<OuterSkin, kContacts> skins_;
+  OuterSkin trunk_;  // and thighs: what bears while the body lies
   double heading_ = 0.0;
   bool a_is_right_ = true;
   bool placed_ = false;
-  double seat_height_ = 0.0;  // of the lying body
+  double seat_height_ = 0.0, trunk_height_ = 0.0;  // of the lying body
   std::vector<PlannedKey> keys_;
+  std::vector<double> stays_s_;  // of each key
 };
 
 FigurePose Planner::likeness_of(const KeyPose& key) const {
@@ -410,6 +433,7 @@ void Planner::solve_key(const KeyPose& key, const PlannedKey& following) {
     if (next.on[c] && last.on[c]) placed[c] = true, next.pin[c] = last.pin[c];
   PoseGoals goals = likeness_goals(key);
   place_likeness(key, next, goals);
+  if (next.lies) goals.touches.push_back({&trunk_, 150.0});
   goals.support_weight = 120.0;
   FigurePose figure = whole_.reach(with_contacts(goals, next, placed), goals.likeness, 25);
   for (const bool left : {true, false}) {
@@ -551,9 +575,25 @@ std::vector<Vec2> Planner::balance_path() const {
   return result;
 }
 
-/// Seconds that a part stays after a key, until the weight has left it.
-double Planner::stays_s(int i) const {
-  return keys_[i].lies ? 0.0 : std::min(0.14, 0.25 * (keys_[i + 1].time_s - keys_[i].time_s));
+/// Seconds that parts stay after each key, until the weight lies over what remains.
+std::vector<double> Planner::stays(const std::vector<Vec2>& balance) const {
+  constexpr double kLeast_s = 0.14, kAfter_s = 0.06;
+  std::vector<double> result;
+  for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
+    const double span = keys_[i + 1].time_s - keys_[i].time_s;
+    const auto remains = drawn_in(support(keys_[i], keys_[i + 1]), 0.5 * kInside * whole_.body().height_m);
+    double stays_s = 0.0;
+    while (stays_s < span) {
+      const auto frame = static_cast<std::size_t>(std::lround((keys_[i].time_s + stays_s) * settings_.fps));
+      if (way_into(remains, balance[std::min(frame, balance.size() - 1)]).norm() < 0.005) break;
+      stays_s += 1.0 / settings_.fps;
+    }
+    stays_s = stays_s > 0.0 ? stays_s + kAfter_s : 0.0;
+    result.push_back(keys_[i].lies
+                         ? 0.0
+                         : std::min(std::max(kLeast_s, stays_s), (stays_s > kLeast_s ? 0.5 : 0.25) * span));
+  }
+  return result;
 }
 
 /// Where the same segment comes down that leaves the floor in an interval: a step.
@@ -571,11 +611,18 @@ bool Planner::steps_from(int contact, int i) const {
   return false;
 }
 
+/// Out of the floor, with all its skin.
+void Planner::raise(Segment segment, Rigid& at) const {
+  double low = 0.0;
+  for (const Vec3& p : whole_.skin()[index(segment)]) low = std::min(low, (at * p).y());
+  at.translation.y() -= low;
+}
+
 /// A step: from one place to the next, lifted, in the time between them.
 void Planner::add_swing(int from, int to, int i, double time_s, PoseGoals& goals) const {
   constexpr double kLift = 0.04;       // of the height
   constexpr double kSettles_s = 0.05;  // before the next key
-  const double begins_s = keys_[i].time_s + stays_s(i), ends_s = keys_[i + 1].time_s - kSettles_s;
+  const double begins_s = keys_[i].time_s + stays_s_[i], ends_s = keys_[i + 1].time_s - kSettles_s;
   const double share = smooth_step((time_s - begins_s) / (ends_s - begins_s));
   const Rigid& a = keys_[i].pin[from];
   const Rigid& b = keys_[i + 1].pin[to];
@@ -583,6 +630,7 @@ void Planner::add_swing(int from, int to, int i, double time_s, PoseGoals& goals
   Vec3 place = (1.0 - share) * (a * points_[from]) + share * (b * points_[to]);
   place.y() += kLift * whole_.body().height_m * 4.0 * share * (1.0 - share);
   target.translation = place - target.rotation * points_[to];
+  raise(segment_of(to), target);
   const double firm = 1.0 - 0.8 * 4.0 * share * (1.0 - share);
   add_pin(to, target, firm, 0.5 * firm, goals);
 }
@@ -602,11 +650,12 @@ void Planner::add_on_the_way(int contact, int i, double time_s, const BodyPose& 
     Vec3 place = (1.0 - share) * (own * points_[contact]) + share * (pin * points_[contact]);
     if (kind_of(contact) != seat) place.y() += kArc * whole_.body().height_m * std::sin(kPi * share);
     target.translation = place - target.rotation * points_[contact];
+    if (kind_of(contact) != seat) raise(segment_of(contact), target);
     add_pin(contact, target, growing(progress), growing(progress), goals);
   };
   if (keys_[i].on[contact])
     partly(keys_[i].pin[contact],
-           1.0 - std::max(0.0, time_s - keys_[i].time_s - stays_s(i)) / std::min(0.4, ease));
+           1.0 - std::max(0.0, time_s - keys_[i].time_s - stays_s_[i]) / std::min(0.4, ease));
   if (keys_[i + 1].on[contact])
     partly(keys_[i + 1].pin[contact], 1.0 - (keys_[i + 1].time_s - time_s) / ease);
 }
@@ -640,6 +689,12 @@ PoseGoals Planner::goals_at(double time_s, const FigurePose& reference, double l
       add_on_the_way(c, i, time_s, alike, goals);
   }
   for (TouchGoal& goal : goals.touches) goal.height_m = settled * seat_height_;
+  if (keys_[i].lies) {
+    const double rises = keys_[i + 1].lies
+                             ? 0.0
+                             : (time_s - keys_[i].time_s) / (0.6 * (keys_[i + 1].time_s - keys_[i].time_s));
+    goals.touches.push_back({&trunk_, 150.0 * (1.0 - smooth_step(rises)), settled * trunk_height_});
+  }
   return goals;
 }
 
@@ -647,11 +702,11 @@ PoseGoals Planner::balanced_goals(int frame, const FigurePose& reference, const 
                                   double likeness) const {
   PoseGoals goals = goals_at(frame / settings_.fps, reference, likeness);
   goals.balance = balance;
-  goals.balance_weight = 20.0;
+  goals.balance_weight = 60.0;
   const int i = interval(frame / settings_.fps);
   if (!keys_[i].lies)
     goals.supports = {drawn_in(support(keys_[i], keys_[i + 1]), 0.5 * kInside * whole_.body().height_m)};
-  goals.support_weight = 120.0;
+  goals.support_weight = 120.0 * smooth_step(frame / settings_.fps / 0.4);
   goals.floor_weight = 200.0;
   return goals;
 }
@@ -680,20 +735,64 @@ std::vector<FigurePose> Planner::guided(const std::vector<FigurePose>& reference
   return smoothed(figures, 0.09);
 }
 
-void Planner::fill_frames(GetUp& result) const {
-  const std::vector<FigurePose> reference = smoothed(references(), 0.11);
-  const std::vector<Vec2> balance = balance_path();
-  const std::vector<FigurePose> guide = guided(reference, balance);
+/// Adds to the way of the weight what is missing where it is not over what bears it, early enough.
+void Planner::mend_balance(const std::vector<FigurePose>& figures, std::vector<Vec2>& balance) const {
+  const int last = static_cast<int>(figures.size()) - 1;
+  const int reach = static_cast<int>(std::lround(0.12 * settings_.fps));
+  std::vector<Vec2> missing;
+  for (const FigurePose& figure : figures) {
+    const BodyPose segments = whole_.segments(figure);
+    const Vec3 com = whole_.centre_of_mass(segments);
+    const auto support = support_of(whole_.body(), whole_.skin(), segments);
+    missing.push_back(
+        way_into(drawn_in(support, 0.5 * kInside * whole_.body().height_m), {com.x(), com.z()}));
+  }
+  std::vector<Vec2> most;
+  for (int f = 0; f <= last; ++f) {
+    Vec2 largest = Vec2::Zero();
+    for (int k = std::max(0, f - reach); k <= std::min(last, f + reach); ++k)
+      if (missing[k].norm() > largest.norm()) largest = missing[k];
+    most.push_back(largest);
+  }
+  for (int f = 1; f < last; ++f) {
+    Vec2 sum = Vec2::Zero();
+    const int around = std::min({reach, f, last - f});
+    for (int k = f - around; k <= f + around; ++k) sum += most[k];
+    const double ramp =
+        smooth_step(f / settings_.fps / 0.35) * smooth_step((last - f) / settings_.fps / 0.35);
+    balance[f] += ramp / (2.0 * around + 1.0) * sum;
+  }
+}
+
+std::vector<FigurePose> Planner::balanced(const std::vector<FigurePose>& guide,
+                                          const std::vector<Vec2>& balance) const {
   const int last = static_cast<int>(guide.size()) - 1;
   std::vector<FigurePose> figures;
   for (int f = 0; f <= last; ++f)
     figures.push_back(f == 0 || f == last
                           ? guide[f]
                           : whole_.reach(balanced_goals(f, guide[f], balance[f], 20.0), guide[f], 6));
-  figures = smoothed(figures, 0.055);
+  return smoothed(figures, 0.055);
+}
+
+void Planner::fill_frames(GetUp& result) const {
+  constexpr int kRounds = 3;
+  constexpr double kSunk_m = 0.003;
+  const std::vector<FigurePose> reference = smoothed(references(), 0.11);
+  std::vector<Vec2> balance = balance_path();
+  std::vector<FigurePose> figures = balanced(guided(reference, balance), balance);
+  for (int round = 0; round < kRounds; ++round) {
+    mend_balance(figures, balance);
+    figures = balanced(figures, balance);
+  }
+  const int last = static_cast<int>(figures.size()) - 1;
   result.frames.push_back(lying_);
   for (int f = 1; f < last; ++f) {
-    const FigurePose figure = whole_.reach(balanced_goals(f, figures[f], balance[f], 40.0), figures[f], 4);
+    PoseGoals goals = balanced_goals(f, figures[f], balance[f], 40.0);
+    FigurePose figure = whole_.reach(goals, figures[f], 4);
+    goals.floor_weight = 800.0;
+    if (whole_.lowest(whole_.segments(figure)) < goals.floor_m - kSunk_m)
+      figure = whole_.reach(goals, figure, 6);
     result.frames.push_back(whole_.segments(whole_.inside(figure, radians(-0.5))));
   }
 }
@@ -717,20 +816,22 @@ double Planner::unhurried_s(const PlannedKey& from, const PlannedKey& to) const 
 void Planner::start_lying(const Route& route, bool knees_free) {
   PlannedKey start;
   start.figure = figure_pose(lying_);
-  start.lies = true;
+  const bool kneels = !(route.keys.front().touches & (kSeat | kBody));
+  start.lies = !kneels;
   const double low_m = 0.015 * whole_.body().height_m;
   for (const bool left : {true, false}) {
     const int c = contact_index(knee, left);
     start.pin[c] = lying_[index(segment_of(c))];
     start.on[c] = !knees_free && (start.pin[c] * points_[c]).y() < low_m;
+    const int t = contact_index(toes, left);
+    start.pin[t] = lying_[index(segment_of(t))];
+    start.on[t] = kneels && (start.pin[t] * points_[t]).y() < 2.0 * low_m;
   }
   const int on_seat = contact_index(seat, true);
   start.pin[on_seat] = lying_[0];
   start.on[on_seat] = (route.keys.front().touches & kSeat) != 0;
-  seat_height_ = std::numeric_limits<double>::infinity();
-  for (int s = 0; s < kSegmentCount; ++s)
-    for (const Vec3& p : skins_[on_seat][s]) seat_height_ = std::min(seat_height_, (lying_[s] * p).y());
-  if (!std::isfinite(seat_height_)) seat_height_ = 0.0;
+  seat_height_ = lowest_of(skins_[on_seat], lying_);
+  trunk_height_ = lowest_of(trunk_, lying_);
   keys_ = {start};
 }
 
@@ -779,6 +880,7 @@ GetUp Planner::plan(const Route& route, double heading, const WayRound& side, do
   }
   end_standing(tempo * route.rise_s);
   result.phases.push_back({"stands", keys_.back().time_s});
+  stays_s_ = stays(balance_path());
   fill_frames(result);
   result.frames.push_back(standing_);
   result.planted = planted_parts();
@@ -891,6 +993,11 @@ struct Way {
   bool a_is_right;
 };
 
+bool knees_are_low(const ArticulatedBody& body, const BodyPose& lying) {
+  return std::min(lying[index(Segment::shank_l)].translation.y(),
+                  lying[index(Segment::shank_r)].translation.y()) < 0.08 * body.height_m;
+}
+
 Way choose(const ArticulatedBody& body, const BodyPose& lying, const GetUpSettings& settings,
            Random& random) {
   const Lying how = lying_of(body, lying);
@@ -912,7 +1019,8 @@ Way choose(const ArticulatedBody& body, const BodyPose& lying, const GetUpSettin
       return {route, to_feet(lying), open};
     }
     case Lying::kneeling:
-      if ((chest.rotation * kY).y() > 0.6) return {kneeling_route(), level(front), open};
+      if ((chest.rotation * kY).y() > 0.5)
+        return {knees_are_low(body, lying) ? kneeling_route() : crouched_route(), level(front), open};
       return {prone_route(), level(up), open};
     case Lying::prone:
       return {prone_route(), level(up), open};

@@ -114,6 +114,12 @@ Route kneeling_route() {
   return {"kneeling", {steps, lunge(), feet_together()}, 0.45};
 }
 
+Route crouched_route() {
+  KeyPose steps = lunge();
+  steps.seconds = 0.6;
+  return {"crouched", {steps, feet_together()}, 0.45};
+}
+
 Route side_route() {
   Route route = prone_route();
   route.name = "side";

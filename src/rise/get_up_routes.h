@@ -53,5 +53,6 @@ Route squat_route();       // sits, rocks onto the feet, squats
 Route half_kneel_route();  // sits to one side, half kneels
 Route prone_route();       // pushes up, all fours, half kneels
 Route kneeling_route();    // kneels upright: one foot forward, stands
+Route crouched_route();    // on his feet, knees bent: stands
 Route side_route();        // lies on side b: turns over side b onto hands and knees
 }  // namespace ukemi

@@ -16,8 +16,8 @@
 #include "base/character_path.h"
 #include "blows.h"
 #include "body/ground.h"
+#include "body/weight.h"
 #include "judge/judge.h"
-#include "judge/weight.h"
 #include "load/load.h"
 #include "prepare/setting_table.h"
 
@@ -25,6 +25,7 @@ namespace ukemi {
 namespace {
 
 constexpr int kPoses = 9;
+constexpr double kAsHeLay_s = 0.3;  // in which he still lies as the fall left him
 
 struct PhaseFigures {
   std::string name;
@@ -37,7 +38,7 @@ struct Row {
   double slide_m = 0.0, skin_m = 0.0, duration_s = 0.0, score = 0.0, speed_m_s = 0.0;
   double cost_s = 0.0;
   long over_1deg = 0;
-  std::string failed, frames;
+  std::string failed, frames, slides;
 };
 
 Status set(BakeSettings& settings, const std::string& name, const std::string& value) {
@@ -72,9 +73,10 @@ void see_phases(const BakedClip& outcome, const std::vector<WeightOffset>& weigh
                        : static_cast<int>(clip.frames.size());
     for (int f = std::max(from, first + 1); f < to; ++f) {
       const auto i = static_cast<std::size_t>(f);
+      figures.skin_m = std::max(figures.skin_m, skin.depth(clip.frames[i]).body_m);
+      if (f < first + kAsHeLay_s * clip.fps) continue;
       figures.mass_m = std::max(figures.mass_m, weights[i].mass_m);
       figures.least_m = std::max(figures.least_m, weights[i].least_m());
-      figures.skin_m = std::max(figures.skin_m, skin.depth(clip.frames[i]).body_m);
     }
     row.skin_m = std::max(row.skin_m, figures.skin_m);
     row.phases.push_back(figures);
@@ -83,7 +85,8 @@ void see_phases(const BakedClip& outcome, const std::vector<WeightOffset>& weigh
 
 /// Every third frame: how far the weight is off, and the lowest skin of what could bear, mm.
 void see_frames(const BakedClip& outcome, const PerSegment<std::vector<Vec3>>& skin,
-                const std::vector<BodyPose>& frames, const std::vector<WeightOffset>& weights, Row& row) {
+                const std::vector<BodyPose>& frames, const std::vector<WeightOffset>& weights,
+                const SkinOverFloor& blended, const Skeleton& skeleton, Row& row) {
   const double fps = outcome.timeline.clip.fps;
   for (auto f = static_cast<std::size_t>(std::lround(outcome.get_up->begins_s * fps)); f < frames.size();
        f += 3) {
@@ -95,6 +98,9 @@ void see_frames(const BakedClip& outcome, const PerSegment<std::vector<Vec3>>& s
       for (const Vec3& p : skin[s]) low = std::min(low, (frames[f][s] * p).y());
       if (low < 0.05) row.frames += fmt::format(" {} {:.0f}", name(segment_at(s)), 1e3 * low);
     }
+    const SkinDepth depth = blended.depth(outcome.timeline.clip.frames[f]);
+    if (depth.body_m > 0.004)
+      row.frames += fmt::format(" | {} sunk {:.0f}", skeleton.label(depth.body_node), 1e3 * depth.body_m);
     row.frames += '\n';
   }
 }
@@ -107,8 +113,12 @@ void see_motion(const BakedClip& outcome, const std::vector<BodyPose>& frames, R
     const auto place = [&](int f) {
       return Vec3(frames[static_cast<std::size_t>(first + f)][index(part.segment)] * part.point);
     };
-    for (int f = part.first; f <= part.last; ++f)
-      row.slide_m = std::max(row.slide_m, (place(f) - place(part.first)).norm());
+    for (int f = part.first; f <= part.last; ++f) {
+      const Vec3 way = place(f) - place(part.first);
+      if (way.norm() <= row.slide_m) continue;
+      row.slide_m = way.norm();
+      row.slides = fmt::format("{} at {:.2f} s, up {:.0f}", name(part.segment), f / fps, 1e3 * way.y());
+    }
   }
   for (std::size_t f = static_cast<std::size_t>(first) + 1; f < frames.size(); ++f)
     for (int s = 0; s < kSegmentCount; ++s)
@@ -129,7 +139,7 @@ void see(const Character& character, const BakeSettings& settings, const BakedCl
                            prepared.start.segments);
   const auto weights = weight_offsets(prepared.body, outer, frames, clip.fps);
   see_phases(outcome, weights, skin, row);
-  see_frames(outcome, outer, frames, weights, row);
+  see_frames(outcome, outer, frames, weights, skin, character.skeleton, row);
   see_motion(outcome, frames, row);
   const int first = static_cast<int>(std::lround(outcome.get_up->begins_s * clip.fps));
   row.lying = name(lying_of(prepared.body, frames[static_cast<std::size_t>(first)]));
@@ -161,9 +171,10 @@ void run(const Character& character, const BakeSettings& settings, Row& row) {
 void print_row(const Row& row) {
   fmt::print("{:<28}", row.what);
   if (!row.error.empty()) return fmt::print(" {}\n", row.error);
-  fmt::print(" {:<10} {:<10} {:.1f} s score {:.2f} slide {:4.1f} skin {:4.1f} mm {:.1f} m/s over {}{}\n   ",
-             row.lying, row.route, row.duration_s, row.score, 1e3 * row.slide_m, 1e3 * row.skin_m,
-             row.speed_m_s, row.over_1deg, row.failed);
+  fmt::print(
+      " {:<10} {:<10} {:.1f} s score {:.2f} slide {:4.1f} ({}) skin {:4.1f} mm {:.1f} m/s over {}{}\n   ",
+      row.lying, row.route, row.duration_s, row.score, 1e3 * row.slide_m, row.slides, 1e3 * row.skin_m,
+      row.speed_m_s, row.over_1deg, row.failed);
   for (const PhaseFigures& phase : row.phases)
     fmt::print(" {} {:.0f}({:.0f}) mm skin {:.0f};", phase.name, 1e3 * phase.mass_m, 1e3 * phase.least_m,
                1e3 * phase.skin_m);

@@ -1,4 +1,4 @@
-#include "judge/weight.h"
+#include "body/weight.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,17 +22,6 @@ bool is_flesh(Segment segment) {
   return false;
 }
 
-std::vector<Vec2> support_of(const PerSegment<std::vector<Vec3>>& skin, const BodyPose& pose,
-                             double height_m) {
-  std::vector<Vec2> corners;
-  for (int s = 0; s < kSegmentCount; ++s)
-    for (const Vec3& point : skin[s])
-      if (const Vec3 place = pose[s] * point;
-          place.y() < height_m * (is_flesh(segment_at(s)) ? kFlesh : kBears))
-        corners.push_back(on_ground(place));
-  return corners.size() < 3 ? corners : convex_hull(corners);
-}
-
 double outside(const std::vector<Vec2>& hull, const Vec3& place) {
   if (hull.empty()) return std::numeric_limits<double>::infinity();
   if (hull.size() < 3) return (hull.front() - on_ground(place)).norm();
@@ -40,6 +29,17 @@ double outside(const std::vector<Vec2>& hull, const Vec3& place) {
 }
 
 }  // namespace
+
+std::vector<Vec2> support_of(const ArticulatedBody& body, const PerSegment<std::vector<Vec3>>& skin,
+                             const BodyPose& pose) {
+  std::vector<Vec2> corners;
+  for (int s = 0; s < kSegmentCount; ++s) {
+    const double bears_m = body.height_m * (is_flesh(segment_at(s)) ? kFlesh : kBears);
+    for (const Vec3& point : skin[s])
+      if (const Vec3 place = pose[s] * point; place.y() < bears_m) corners.push_back(on_ground(place));
+  }
+  return corners.size() < 3 ? corners : convex_hull(corners);
+}
 
 std::vector<WeightOffset> weight_offsets(const ArticulatedBody& body,
                                          const PerSegment<std::vector<Vec3>>& skin,
@@ -51,7 +51,7 @@ std::vector<WeightOffset> weight_offsets(const ArticulatedBody& body,
   const auto at = [&](int f) { return mass[static_cast<std::size_t>(std::clamp(f, 0, last))]; };
   std::vector<WeightOffset> offsets;
   for (int f = 0; f <= last; ++f) {
-    const std::vector<Vec2> hull = support_of(skin, frames[static_cast<std::size_t>(f)], body.height_m);
+    const std::vector<Vec2> hull = support_of(body, skin, frames[static_cast<std::size_t>(f)]);
     const Vec3 c = at(f);
     const Vec3 v = fps / (2.0 * span) * (at(f + span) - at(f - span));
     const Vec3 a = fps * fps / (span * span) * (at(f + span) - 2.0 * c + at(f - span));

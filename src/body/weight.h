@@ -8,6 +8,11 @@
 
 namespace ukemi {
 
+/// Hull (x, z) of the skin that bears. Skin bears up to 20 mm (of a man) over the floor (y = 0), that of
+/// trunk and thighs, which give, up to 50 mm. `skin`: outermost_skin (body/ground.h).
+std::vector<Vec2> support_of(const ArticulatedBody& body, const PerSegment<std::vector<Vec3>>& skin,
+                             const BodyPose& pose);
+
 /// Metres outside the hull of the skin that is on the floor; less than 0 inside.
 struct WeightOffset {
   double mass_m = 0.0;      // of the centre of mass
@@ -18,8 +23,7 @@ struct WeightOffset {
   double least_m() const { return std::min(mass_m, std::max(capture_m, pressure_m)); }
 };
 
-/// Of every frame; floor y = 0. `skin`: outermost_skin (body/ground.h). Skin bears up to 20 mm (of a man)
-/// over the floor. Accelerations are those over a tenth of a second.
+/// Of every frame. Velocities and accelerations are those over a tenth of a second.
 std::vector<WeightOffset> weight_offsets(const ArticulatedBody& body,
                                          const PerSegment<std::vector<Vec3>>& skin,
                                          const std::vector<BodyPose>& frames, double fps);
