@@ -54,9 +54,7 @@ std::vector<WeightOffset> weight_offsets(const ArticulatedBody& body,
     const std::vector<Vec2> hull = support_of(body, skin, frames[static_cast<std::size_t>(f)]);
     const Vec3 c = at(f);
     const Vec3 v = fps / (2.0 * span) * (at(f + span) - at(f - span));
-    const Vec3 a = fps * fps / (span * span) * (at(f + span) - 2.0 * c + at(f - span));
-    offsets.push_back({outside(hull, c), outside(hull, c + std::sqrt(c.y() / kGravity) * v),
-                       outside(hull, c - c.y() / std::max(1.0, kGravity + a.y()) * a)});
+    offsets.push_back({outside(hull, c), outside(hull, c + std::sqrt(c.y() / kGravity) * v)});
   }
   return offsets;
 }

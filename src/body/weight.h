@@ -15,15 +15,14 @@ std::vector<Vec2> support_of(const ArticulatedBody& body, const PerSegment<std::
 
 /// Metres outside the hull of the skin that is on the floor; less than 0 inside.
 struct WeightOffset {
-  double mass_m = 0.0;      // of the centre of mass
-  double capture_m = 0.0;   // of where its motion takes it: c + v sqrt(h / g) (Hof 2008, eq. 5)
-  double pressure_m = 0.0;  // of where the floor would have to push to make it move so: c - h a / (g + a_y)
+  double mass_m = 0.0;     // of the centre of mass
+  double capture_m = 0.0;  // of where its motion takes it: c + v sqrt(h / g) (Hof 2008, eq. 5)
 
-  /// Momentum may carry what does not lie over its support, towards it or out of it.
-  double least_m() const { return std::min(mass_m, std::max(capture_m, pressure_m)); }
+  /// Momentum may carry in what does not lie over its support yet.
+  double least_m() const { return std::min(mass_m, capture_m); }
 };
 
-/// Of every frame. Velocities and accelerations are those over a tenth of a second.
+/// Of every frame. Velocities are those over a tenth of a second.
 std::vector<WeightOffset> weight_offsets(const ArticulatedBody& body,
                                          const PerSegment<std::vector<Vec3>>& skin,
                                          const std::vector<BodyPose>& frames, double fps);

@@ -702,7 +702,7 @@ PoseGoals Planner::balanced_goals(int frame, const FigurePose& reference, const 
                                   double likeness) const {
   PoseGoals goals = goals_at(frame / settings_.fps, reference, likeness);
   goals.balance = balance;
-  goals.balance_weight = 60.0;
+  goals.balance_weight = 150.0;
   const int i = interval(frame / settings_.fps);
   if (!keys_[i].lies)
     goals.supports = {drawn_in(support(keys_[i], keys_[i + 1]), 0.5 * kInside * whole_.body().height_m)};

@@ -90,9 +90,9 @@ void see_frames(const BakedClip& outcome, const PerSegment<std::vector<Vec3>>& s
   const double fps = outcome.timeline.clip.fps;
   for (auto f = static_cast<std::size_t>(std::lround(outcome.get_up->begins_s * fps)); f < frames.size();
        f += 3) {
-    row.frames += fmt::format(
-        "    {:.2f} s {:4.0f} {:4.0f} {:4.0f} |", static_cast<double>(f) / fps - outcome.get_up->begins_s,
-        1e3 * weights[f].mass_m, 1e3 * weights[f].capture_m, 1e3 * weights[f].pressure_m);
+    row.frames +=
+        fmt::format("    {:.2f} s {:4.0f} {:4.0f} |", static_cast<double>(f) / fps - outcome.get_up->begins_s,
+                    1e3 * weights[f].mass_m, 1e3 * weights[f].capture_m);
     for (int s = 0; s < kSegmentCount; ++s) {
       double low = 1.0;
       for (const Vec3& p : skin[s]) low = std::min(low, (frames[f][s] * p).y());
