@@ -969,10 +969,15 @@ void vary(Random& random, KeyPose& key) {
   for (KeyLeg* leg : {&key.leg_a, &key.leg_b}) leg->abduction += random.uniform(-2.0, 3.0);
 }
 
-/// What is wrong with a get-up at its worst, in shares of what goes: parts that slide or sink, leaps.
+/// What is wrong with a get-up at its worst, in shares of what goes: parts that slide or sink, leaps, weight
+/// without support.
 double faults_of(const WholeBody& whole, const GetUp& get_up) {
-  constexpr double kSlide_m = 0.008, kSunk_m = 0.03, kSpeed_m_s = 4.5;
+  constexpr double kSlide_m = 0.008, kSunk_m = 0.03, kSpeed_m_s = 6.0, kOffBalance_m = 0.03;
   double worst = 0.0;
+  const std::vector<WeightOffset> weights =
+      weight_offsets(whole.body(), whole.skin(), get_up.frames, get_up.fps);
+  for (std::size_t f = static_cast<std::size_t>(0.3 * get_up.fps); f < weights.size(); ++f)
+    worst = std::max(worst, weights[f].least_m() / kOffBalance_m);
   for (std::size_t f = 1; f < get_up.frames.size(); ++f) {
     const BodyPose& frame = get_up.frames[f];
     worst = std::max(worst, -whole.lowest(frame) / kSunk_m);

@@ -38,7 +38,7 @@ struct Row {
   double slide_m = 0.0, skin_m = 0.0, duration_s = 0.0, score = 0.0, speed_m_s = 0.0;
   double cost_s = 0.0;
   long over_1deg = 0;
-  std::string failed, frames, slides;
+  std::string failed, frames, slides, fastest;
 };
 
 Status set(BakeSettings& settings, const std::string& name, const std::string& value) {
@@ -121,9 +121,13 @@ void see_motion(const BakedClip& outcome, const std::vector<BodyPose>& frames, R
     }
   }
   for (std::size_t f = static_cast<std::size_t>(first) + 1; f < frames.size(); ++f)
-    for (int s = 0; s < kSegmentCount; ++s)
-      row.speed_m_s =
-          std::max(row.speed_m_s, fps * (frames[f][s].translation - frames[f - 1][s].translation).norm());
+    for (int s = 0; s < kSegmentCount; ++s) {
+      const double speed = fps * (frames[f][s].translation - frames[f - 1][s].translation).norm();
+      if (speed <= row.speed_m_s) continue;
+      row.speed_m_s = speed;
+      row.fastest =
+          fmt::format("{} at {:.2f} s", name(segment_at(s)), (static_cast<double>(f) - first) / fps);
+    }
 }
 
 void see(const Character& character, const BakeSettings& settings, const BakedClip& outcome, Row& row) {
@@ -172,9 +176,10 @@ void print_row(const Row& row) {
   fmt::print("{:<28}", row.what);
   if (!row.error.empty()) return fmt::print(" {}\n", row.error);
   fmt::print(
-      " {:<10} {:<10} {:.1f} s score {:.2f} slide {:4.1f} ({}) skin {:4.1f} mm {:.1f} m/s over {}{}\n   ",
+      " {:<10} {:<10} {:.1f} s score {:.2f} slide {:4.1f} ({}) skin {:4.1f} mm {:.1f} m/s ({}) over {}{}\n  "
+      " ",
       row.lying, row.route, row.duration_s, row.score, 1e3 * row.slide_m, row.slides, 1e3 * row.skin_m,
-      row.speed_m_s, row.over_1deg, row.failed);
+      row.speed_m_s, row.fastest, row.over_1deg, row.failed);
   for (const PhaseFigures& phase : row.phases)
     fmt::print(" {} {:.0f}({:.0f}) mm skin {:.0f};", phase.name, 1e3 * phase.mass_m, 1e3 * phase.least_m,
                1e3 * phase.skin_m);
