@@ -654,8 +654,8 @@ void Planner::add_on_the_way(int contact, int i, double time_s, const BodyPose& 
     add_pin(contact, target, growing(progress), growing(progress), goals);
   };
   if (keys_[i].on[contact])
-    partly(keys_[i].pin[contact],
-           1.0 - std::max(0.0, time_s - keys_[i].time_s - stays_s_[i]) / std::min(0.4, ease));
+    partly(keys_[i].pin[contact], 1.0 - std::max(0.0, time_s - keys_[i].time_s - stays_s_[i]) /
+                                            std::min(kLongestEase_s, span - stays_s_[i]));
   if (keys_[i + 1].on[contact])
     partly(keys_[i + 1].pin[contact], 1.0 - (keys_[i + 1].time_s - time_s) / ease);
 }
@@ -911,6 +911,16 @@ bool feet_before_seat(const BodyPose& pose) {
 
 }  // namespace
 
+namespace {
+
+/// About how high the pelvis of a standing body is: some have big heads and short legs.
+double standing_hips(const ArticulatedBody& body) {
+  return body.joints[index(Joint::knee_l)].anchor_in_parent.norm() +
+         body.joints[index(Joint::ankle_l)].anchor_in_parent.norm() + 0.04 * body.height_m;
+}
+
+}  // namespace
+
 Lying lying_of(const ArticulatedBody& body, const BodyPose& pose) {
   const Rigid& pelvis = pose[index(Segment::pelvis)];
   const Rigid& chest = pose[index(Segment::chest)];
@@ -918,7 +928,7 @@ Lying lying_of(const ArticulatedBody& body, const BodyPose& pose) {
   const double trunk_up = (chest.rotation * kY).y();
   const double front_up = (chest.rotation * kX + pelvis.rotation * kX).y();
   const double right_up = (chest.rotation * kZ + pelvis.rotation * kZ).y();
-  if (pelvis.translation.y() > 0.38 * h) return Lying::upright;
+  if (pelvis.translation.y() > std::min(0.38 * h, 0.73 * standing_hips(body))) return Lying::upright;
   if (trunk_up > std::sin(radians(40.0)) && pelvis.translation.y() < 0.14 * h) return Lying::seated;
   if (pelvis.translation.y() < 0.14 * h && feet_before_seat(pose)) return Lying::seated;
   const bool aside = std::abs(right_up) > 1.25 * std::abs(front_up) + 0.2;

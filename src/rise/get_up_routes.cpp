@@ -18,13 +18,13 @@ KeyPose draws_up() {
 
 // From all fours on.
 KeyPose front_foot_planted() {
-  return {"half_kneels", 0.55,   50, 0, 0,   26, 0,   -16, 0,
+  return {"half_kneels", 0.48,   50, 0, 0,   26, 0,   -16, 0,
           {62, 8, 0, 12, -60}, {60, 10, 0, 16, -55},
           {112, 8, 6, 108, 16}, {52, 6, 4, 96, -10},
           kFootA | kKneeB | kToesB | kHandA | kHandB};
 }
 KeyPose half_kneel() {
-  return {"", 0.62,   20, 0, 0,   20, 0,   -2, 0,
+  return {"", 0.5,   20, 0, 0,   20, 0,   -2, 0,
           {42, 10, 10, 58, -10}, {22, 12, 0, 32, 0},
           {96, 8, 6, 98, 14}, {16, 4, 4, 94, 8},
           kFootA | kKneeB | kToesB};
@@ -86,7 +86,7 @@ Route half_kneel_route() {
             {112, 8, 4, 116, 12}, {64, 14, 8, 116, -10},
             kHandA | kFootA | kKneeB | kToesB},
            half_kneel(), lunge(), feet_together()},
-          0.45};
+          0.42};
 }
 
 Route prone_route() {
@@ -99,12 +99,12 @@ Route prone_route() {
             {24, 30, 0, 70, -70}, {22, 30, 0, 72, -70},
             {26, 8, 0, 46, -20}, {22, 8, 0, 42, -20},
             kHandA | kHandB | kKneeA | kKneeB},
-           {"on_all_fours", 0.45,   68, 0, 0,   6, 0,   -22, 0,
+           {"on_all_fours", 0.4,   68, 0, 0,   6, 0,   -22, 0,
             {80, 10, 0, 12, -72}, {76, 10, 0, 12, -72},
             {76, 8, 0, 94, -25}, {72, 8, 0, 92, -25},
             kHandA | kHandB | kKneeA | kKneeB | kToesB},
            front_foot_planted(), half_kneel(), lunge(), feet_together()},
-          0.45};
+          0.42};
 }
 
 Route kneeling_route() {
