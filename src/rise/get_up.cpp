@@ -776,7 +776,7 @@ std::vector<FigurePose> Planner::balanced(const std::vector<FigurePose>& guide,
 }
 
 void Planner::fill_frames(GetUp& result) const {
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 2;
   constexpr double kSunk_m = 0.003;
   const std::vector<FigurePose> reference = smoothed(references(), 0.11);
   std::vector<Vec2> balance = balance_path();
@@ -800,7 +800,8 @@ void Planner::fill_frames(GetUp& result) const {
 /// The least time from one pose to another: joints and pelvis turn no faster than people's do in get-ups.
 double Planner::unhurried_s(const PlannedKey& from, const PlannedKey& to) const {
   constexpr double kJointSpeed = radians(250.0), kPelvisSpeed = radians(170.0);  // means
-  const double part_speed = 1.5 * std::sqrt(whole_.body().height_m / 1.75);      // m/s
+  constexpr double kRise = 0.8;                                                  // m/s, mean
+  const double part_speed = 1.4 * std::sqrt(whole_.body().height_m / 1.75);      // m/s
   double least = angle_between(from.figure.turn, to.figure.turn) / kPelvisSpeed;
   for (int j = 0; j < kJointCount; ++j)
     least = std::max(least, angle_between(from.figure.joints[j], to.figure.joints[j]) / kJointSpeed);
@@ -810,6 +811,7 @@ double Planner::unhurried_s(const PlannedKey& from, const PlannedKey& to) const 
     if (from.on[c] != to.on[c])
       least = std::max(least, (is[s] * points_[c] - was[s] * points_[c]).norm() / part_speed);
   }
+  least = std::max(least, (whole_.centre_of_mass(is) - whole_.centre_of_mass(was)).y() / kRise);
   return least;
 }
 

@@ -32,11 +32,11 @@ KeyPose half_kneel() {
 KeyPose lunge() {
   return {"rises", 0.5,   30, 0, 0,   18, 0,   -4, 0,
           {34, 8, 10, 40, 0}, {16, 10, 0, 28, 0},
-          {78, 6, 6, 74, 22}, {14, 4, 4, 60, 24},
+          {78, 6, 6, 70, 22}, {14, 4, 4, 56, 24},
           kFootA | kToesB};
 }
 KeyPose feet_together() {
-  return {"", 0.55,   14, 0, 0,   12, 0,   0, 0,
+  return {"", 0.6,   16, 0, 0,   14, 0,   0, 0,
           {16, 8, 6, 26, 0}, {10, 9, 0, 24, 0},
           {32, 5, 4, 34, 14}, {34, 5, 4, 38, 14},
           kFootA | kFootB};
@@ -127,6 +127,7 @@ Route side_route() {
                         {60, 20, 0, 70, -60}, {40, 20, 0, 110, -30},
                         {70, 10, 0, 90, -20}, {25, 6, 0, 50, -20},
                         kBody | kHandA | kKneeB};
+  route.keys[1].touches |= kBody;  // until both hands are down
   return route;
 }
 // clang-format on
