@@ -127,7 +127,6 @@ Route side_route() {
                         {60, 20, 0, 70, -60}, {40, 20, 0, 110, -30},
                         {70, 10, 0, 90, -20}, {25, 6, 0, 50, -20},
                         kBody | kHandA | kKneeB};
-  route.keys[1].touches |= kBody;  // until both hands are down
   return route;
 }
 // clang-format on
