@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "base/random.h"
+#include "body/weight.h"
 #include "rise/get_up_routes.h"
 #include "rise/whole_body.h"
 
@@ -42,6 +43,7 @@ const Vec3 kX = Vec3::UnitX(), kY = Vec3::UnitY(), kZ = Vec3::UnitZ();
 
 const double kMargin = radians(1.0);    // inside the ranges
 constexpr double kClearance_m = 0.012;  // of skin on its way over the floor
+constexpr double kInside = 0.02;        // of the height: of the weight, from the corners of its support
 
 double smooth_step(double x) {
   x = std::clamp(x, 0.0, 1.0);
@@ -123,6 +125,21 @@ std::array<OuterSkin, kContacts> contact_skins(const WholeBody& whole) {
   return skins;
 }
 
+OuterSkin trunk_skin(const WholeBody& whole) {
+  OuterSkin skin;
+  for (const Segment s :
+       {Segment::pelvis, Segment::abdomen, Segment::chest, Segment::thigh_l, Segment::thigh_r})
+    skin[index(s)] = whole.skin()[index(s)];
+  return skin;
+}
+
+double lowest_of(const OuterSkin& skin, const BodyPose& pose) {
+  double low = std::numeric_limits<double>::infinity();
+  for (int s = 0; s < kSegmentCount; ++s)
+    for (const Vec3& p : skin[s]) low = std::min(low, (pose[s] * p).y());
+  return std::isfinite(low) ? low : 0.0;
+}
+
 /// Corners on the ground of what bears at a contact.
 void add_corners(const WholeBody& whole, int contact, const Rigid& at, const Vec3& point,
                  std::vector<Vec2>& corners) {
@@ -150,7 +167,7 @@ struct PlannedKey {
   FigurePose figure;
   std::array<bool, kContacts> on{};
   std::array<Rigid, kContacts> pin{};  // of the contact's segment
-  double leniency_m = 0.0;
+  bool lies = false;                   // other parts bear too
   bool keeps_body = false;
 };
 
@@ -170,7 +187,8 @@ class Planner {
         standing_(standing),
         settings_(settings),
         points_(contact_points(whole)),
-        skins_(contact_skins(whole)) {}
+        skins_(contact_skins(whole)),
+        trunk_(trunk_skin(whole)) {}
 
   GetUp plan(const Route& route, double heading, const WayRound& side, double tempo);
 
@@ -181,7 +199,11 @@ class Planner {
   void place_likeness(const KeyPose& key, const PlannedKey& next, PoseGoals& goals) const;
   PoseGoals with_contacts(PoseGoals goals, const PlannedKey& next,
                           const std::array<bool, kContacts>& placed) const;
-  void solve_key(const KeyPose& key);
+  void solve_key(const KeyPose& key, const PlannedKey& following);
+  std::vector<std::vector<Vec2>> supports_of(const PlannedKey& next, const PlannedKey& following,
+                                             const std::array<bool, kContacts>& placed,
+                                             const FigurePose& figure) const;
+  PlannedKey touching(const KeyPose& key) const;
   void start_lying(const Route& route, bool knees_free);
   void end_standing(double rise_s);
   std::vector<PlantedPart> planted_parts() const;
@@ -198,9 +220,19 @@ class Planner {
   std::vector<FigurePose> guided(const std::vector<FigurePose>& reference,
                                  const std::vector<Vec2>& balance) const;
   void fill_frames(GetUp& result) const;
+  void mend_balance(const std::vector<FigurePose>& figures, std::vector<Vec2>& balance) const;
+  std::vector<FigurePose> balanced(const std::vector<FigurePose>& guide,
+                                   const std::vector<Vec2>& balance) const;
   PoseGoals balanced_goals(int frame, const FigurePose& reference, const Vec2& balance,
                            double likeness) const;
   PoseGoals goals_at(double time_s, const FigurePose& reference, double likeness) const;
+  std::vector<double> stays(const std::vector<Vec2>& balance) const;
+  std::optional<int> steps_to(int contact, int i) const;
+  bool steps_from(int contact, int i) const;
+  void raise(Segment segment, Rigid& at) const;
+  void add_swing(int from, int to, int i, double time_s, PoseGoals& goals) const;
+  void add_on_the_way(int contact, int i, double time_s, const BodyPose& alike, PoseGoals& goals) const;
+  double unhurried_s(const PlannedKey& from, const PlannedKey& to) const;
 
   double end_s() const { return keys_.back().time_s; }
   int interval(double time_s) const {
@@ -216,11 +248,13 @@ class Planner {
   GetUpSettings settings_;
   ContactPoints points_;
   std::array<OuterSkin, kContacts> skins_;
+  OuterSkin trunk_;  // and thighs: what bears while the body lies
   double heading_ = 0.0;
   bool a_is_right_ = true;
   bool placed_ = false;
-  double seat_height_ = 0.0;  // of the lying body
+  double seat_height_ = 0.0, trunk_height_ = 0.0;  // of the lying body
   std::vector<PlannedKey> keys_;
+  std::vector<double> stays_s_;  // of each key
 };
 
 FigurePose Planner::likeness_of(const KeyPose& key) const {
@@ -365,22 +399,42 @@ PoseGoals Planner::with_contacts(PoseGoals goals, const PlannedKey& next,
   return goals;
 }
 
-/// Twice: where new feet come down decides where the body will stand, and that where exactly they go.
-void Planner::solve_key(const KeyPose& key) {
+PlannedKey Planner::touching(const KeyPose& key) const {
+  PlannedKey planned;
+  planned.on = touches_of(key);
+  planned.lies = (key.touches & kBody) != 0;
+  planned.keeps_body = key.keeps_body;
+  return planned;
+}
+
+/// Where the weight lies at a key: over what bore it on the way there, and over what will bear it on the way
+/// to the following. So it is shifted before a part lifts.
+std::vector<std::vector<Vec2>> Planner::supports_of(const PlannedKey& next, const PlannedKey& following,
+                                                    const std::array<bool, kContacts>& placed,
+                                                    const FigurePose& figure) const {
+  const double margin = kInside * whole_.body().height_m;
+  std::vector<std::vector<Vec2>> supports;
+  if (!keys_.back().lies) supports.push_back(drawn_in(support(keys_.back(), next), margin));
+  const BodyPose segments = whole_.segments(figure);
+  PlannedKey now = next;
+  for (int c = 0; c < kContacts; ++c)
+    if (!placed[c]) now.pin[c] = segments[index(segment_of(c))];
+  if (!(next.lies && following.lies)) supports.push_back(drawn_in(support(now, following), margin));
+  return supports;
+}
+
+/// Again and again: where new feet come down decides where the body will stand, and that where exactly they
+/// go; where hands and knees come down decides what there is to lean on.
+void Planner::solve_key(const KeyPose& key, const PlannedKey& following) {
   const PlannedKey& last = keys_.back();
-  PlannedKey next;
-  next.on = touches_of(key);
-  next.leniency_m = key.leniency_m;
-  next.keeps_body = key.keeps_body;
+  PlannedKey next = touching(key);
   std::array<bool, kContacts> placed{};
   for (int c = 0; c < kContacts; ++c)
     if (next.on[c] && last.on[c]) placed[c] = true, next.pin[c] = last.pin[c];
   PoseGoals goals = likeness_goals(key);
   place_likeness(key, next, goals);
-  if (keys_.size() > 1) {
-    goals.support = drawn_in(support(last, next), 0.02 * whole_.body().height_m - key.leniency_m);
-    goals.support_weight = 60.0;
-  }
+  if (next.lies) goals.touches.push_back({&trunk_, 150.0});
+  goals.support_weight = 120.0;
   FigurePose figure = whole_.reach(with_contacts(goals, next, placed), goals.likeness, 25);
   for (const bool left : {true, false}) {
     const int c = contact_index(foot, left);
@@ -389,7 +443,10 @@ void Planner::solve_key(const KeyPose& key) {
     placed[c] = true;
     next.pin[c] = standing_[index(segment_of(c))];
   }
-  figure = whole_.reach(with_contacts(goals, next, placed), figure, 15);
+  for (int round = 0; round < 3; ++round) {
+    goals.supports = supports_of(next, following, placed, figure);
+    figure = whole_.reach(with_contacts(goals, next, placed), figure, 15);
+  }
   const BodyPose segments = whole_.segments(figure);
   for (int c = 0; c < kContacts; ++c)
     if (next.on[c] && !placed[c]) next.pin[c] = segments[index(segment_of(c))];
@@ -518,10 +575,93 @@ std::vector<Vec2> Planner::balance_path() const {
   return result;
 }
 
-PoseGoals Planner::goals_at(double time_s, const FigurePose& reference, double likeness) const {
+/// Seconds that parts stay after each key, until the weight lies over what remains.
+std::vector<double> Planner::stays(const std::vector<Vec2>& balance) const {
+  constexpr double kLeast_s = 0.14, kAfter_s = 0.06;
+  std::vector<double> result;
+  for (std::size_t i = 0; i + 1 < keys_.size(); ++i) {
+    const double span = keys_[i + 1].time_s - keys_[i].time_s;
+    const auto remains = drawn_in(support(keys_[i], keys_[i + 1]), 0.5 * kInside * whole_.body().height_m);
+    double stays_s = 0.0;
+    while (stays_s < span) {
+      const auto frame = static_cast<std::size_t>(std::lround((keys_[i].time_s + stays_s) * settings_.fps));
+      if (way_into(remains, balance[std::min(frame, balance.size() - 1)]).norm() < 0.005) break;
+      stays_s += 1.0 / settings_.fps;
+    }
+    stays_s = stays_s > 0.0 ? stays_s + kAfter_s : 0.0;
+    result.push_back(keys_[i].lies
+                         ? 0.0
+                         : std::min(std::max(kLeast_s, stays_s), (stays_s > kLeast_s ? 0.5 : 0.25) * span));
+  }
+  return result;
+}
+
+/// Where the same segment comes down that leaves the floor in an interval: a step.
+std::optional<int> Planner::steps_to(int contact, int i) const {
+  if (!keys_[i].on[contact]) return std::nullopt;
+  for (int c = 0; c < kContacts; ++c)
+    if (c != contact && segment_of(c) == segment_of(contact) && keys_[i + 1].on[c] && !keys_[i].on[c])
+      return c;
+  return std::nullopt;
+}
+
+bool Planner::steps_from(int contact, int i) const {
+  for (int c = 0; c < kContacts; ++c)
+    if (steps_to(c, i) == contact) return true;
+  return false;
+}
+
+/// Out of the floor, with all its skin.
+void Planner::raise(Segment segment, Rigid& at) const {
+  double low = 0.0;
+  for (const Vec3& p : whole_.skin()[index(segment)]) low = std::min(low, (at * p).y());
+  at.translation.y() -= low;
+}
+
+/// A step: from one place to the next, lifted, in the time between them.
+void Planner::add_swing(int from, int to, int i, double time_s, PoseGoals& goals) const {
+  constexpr double kLift = 0.04;       // of the height
+  constexpr double kSettles_s = 0.05;  // before the next key
+  const double begins_s = keys_[i].time_s + stays_s_[i], ends_s = keys_[i + 1].time_s - kSettles_s;
+  const double share = smooth_step((time_s - begins_s) / (ends_s - begins_s));
+  const Rigid& a = keys_[i].pin[from];
+  const Rigid& b = keys_[i + 1].pin[to];
+  Rigid target{a.rotation.slerp(share, b.rotation), Vec3::Zero()};
+  Vec3 place = (1.0 - share) * (a * points_[from]) + share * (b * points_[to]);
+  place.y() += kLift * whole_.body().height_m * 4.0 * share * (1.0 - share);
+  target.translation = place - target.rotation * points_[to];
+  raise(segment_of(to), target);
+  const double firm = 1.0 - 0.8 * 4.0 * share * (1.0 - share);
+  add_pin(to, target, firm, 0.5 * firm, goals);
+}
+
+/// Drawn out of the last place, into the next.
+void Planner::add_on_the_way(int contact, int i, double time_s, const BodyPose& alike,
+                             PoseGoals& goals) const {
   constexpr double kLongestEase_s = 0.42;
-  constexpr double kStill = 150.0;
   constexpr double kArc = 0.02;  // of the height, by which a part lifts on its way
+  const double span = keys_[i + 1].time_s - keys_[i].time_s;
+  const double ease = std::min(kLongestEase_s, 0.75 * span);
+  const auto partly = [&](const Rigid& pin, double progress) {
+    if (progress <= 0.0) return;
+    const double share = smooth_step(progress);
+    const Rigid& own = alike[index(segment_of(contact))];
+    Rigid target{pin.rotation, Vec3::Zero()};
+    Vec3 place = (1.0 - share) * (own * points_[contact]) + share * (pin * points_[contact]);
+    if (kind_of(contact) != seat) place.y() += kArc * whole_.body().height_m * std::sin(kPi * share);
+    target.translation = place - target.rotation * points_[contact];
+    if (kind_of(contact) != seat) raise(segment_of(contact), target);
+    add_pin(contact, target, growing(progress), growing(progress), goals);
+  };
+  if (keys_[i].on[contact])
+    partly(keys_[i].pin[contact], 1.0 - std::max(0.0, time_s - keys_[i].time_s - stays_s_[i]) /
+                                            std::min(kLongestEase_s, span - stays_s_[i]));
+  if (keys_[i + 1].on[contact])
+    partly(keys_[i + 1].pin[contact], 1.0 - (keys_[i + 1].time_s - time_s) / ease);
+}
+
+PoseGoals Planner::goals_at(double time_s, const FigurePose& reference, double likeness) const {
+  constexpr double kStill = 150.0;
   PoseGoals goals;
   // A limp body lies with joints at their ends, half a degree beyond.
   goals.margin = radians(-0.5) + (kMargin + radians(0.5)) * smooth_step(time_s / 0.4);
@@ -541,27 +681,20 @@ PoseGoals Planner::goals_at(double time_s, const FigurePose& reference, double l
       goals.likeness_weight[index(j)] = kStill;
   }
   for (int c = 0; c < kContacts; ++c) {
-    if (keys_[i].on[c] && keys_[i + 1].on[c]) {
+    if (keys_[i].on[c] && keys_[i + 1].on[c])
       add_pin(c, keys_[i].pin[c], 1.0, 1.0, goals);
-      continue;
-    }
-    // On the way: drawn out of the last place, into the next.
-    const double span = keys_[i + 1].time_s - keys_[i].time_s;
-    const double ease = std::min(kLongestEase_s, 0.75 * span);
-    const auto partly = [&](const Rigid& pin, double progress) {
-      if (progress <= 0.0) return;
-      const double share = smooth_step(progress);
-      const Rigid& own = alike[index(segment_of(c))];
-      Rigid target{pin.rotation, Vec3::Zero()};
-      Vec3 place = (1.0 - share) * (own * points_[c]) + share * (pin * points_[c]);
-      if (kind_of(c) != seat) place.y() += kArc * whole_.body().height_m * std::sin(kPi * share);
-      target.translation = place - target.rotation * points_[c];
-      add_pin(c, target, growing(progress), growing(progress), goals);
-    };
-    if (keys_[i].on[c]) partly(keys_[i].pin[c], 1.0 - (time_s - keys_[i].time_s) / std::min(0.24, ease));
-    if (keys_[i + 1].on[c]) partly(keys_[i + 1].pin[c], 1.0 - (keys_[i + 1].time_s - time_s) / ease);
+    else if (const auto to = steps_to(c, i))
+      add_swing(c, *to, i, time_s, goals);
+    else if (!steps_from(c, i))
+      add_on_the_way(c, i, time_s, alike, goals);
   }
   for (TouchGoal& goal : goals.touches) goal.height_m = settled * seat_height_;
+  if (keys_[i].lies) {
+    const double rises = keys_[i + 1].lies
+                             ? 0.0
+                             : (time_s - keys_[i].time_s) / (0.6 * (keys_[i + 1].time_s - keys_[i].time_s));
+    goals.touches.push_back({&trunk_, 150.0 * (1.0 - smooth_step(rises)), settled * trunk_height_});
+  }
   return goals;
 }
 
@@ -569,7 +702,11 @@ PoseGoals Planner::balanced_goals(int frame, const FigurePose& reference, const 
                                   double likeness) const {
   PoseGoals goals = goals_at(frame / settings_.fps, reference, likeness);
   goals.balance = balance;
-  goals.balance_weight = 20.0;
+  goals.balance_weight = 150.0;
+  const int i = interval(frame / settings_.fps);
+  if (!keys_[i].lies)
+    goals.supports = {drawn_in(support(keys_[i], keys_[i + 1]), 0.5 * kInside * whole_.body().height_m)};
+  goals.support_weight = 120.0 * smooth_step(frame / settings_.fps / 0.4);
   goals.floor_weight = 200.0;
   return goals;
 }
@@ -598,49 +735,105 @@ std::vector<FigurePose> Planner::guided(const std::vector<FigurePose>& reference
   return smoothed(figures, 0.09);
 }
 
-void Planner::fill_frames(GetUp& result) const {
-  const std::vector<FigurePose> reference = smoothed(references(), 0.11);
-  const std::vector<Vec2> balance = balance_path();
-  const std::vector<FigurePose> guide = guided(reference, balance);
+/// Adds to the way of the weight what is missing where it is not over what bears it, early enough.
+void Planner::mend_balance(const std::vector<FigurePose>& figures, std::vector<Vec2>& balance) const {
+  const int last = static_cast<int>(figures.size()) - 1;
+  const int reach = static_cast<int>(std::lround(0.12 * settings_.fps));
+  std::vector<Vec2> missing;
+  for (const FigurePose& figure : figures) {
+    const BodyPose segments = whole_.segments(figure);
+    const Vec3 com = whole_.centre_of_mass(segments);
+    const auto support = support_of(whole_.body(), whole_.skin(), segments);
+    missing.push_back(
+        way_into(drawn_in(support, 0.5 * kInside * whole_.body().height_m), {com.x(), com.z()}));
+  }
+  std::vector<Vec2> most;
+  for (int f = 0; f <= last; ++f) {
+    Vec2 largest = Vec2::Zero();
+    for (int k = std::max(0, f - reach); k <= std::min(last, f + reach); ++k)
+      if (missing[k].norm() > largest.norm()) largest = missing[k];
+    most.push_back(largest);
+  }
+  for (int f = 1; f < last; ++f) {
+    Vec2 sum = Vec2::Zero();
+    const int around = std::min({reach, f, last - f});
+    for (int k = f - around; k <= f + around; ++k) sum += most[k];
+    const double ramp =
+        smooth_step(f / settings_.fps / 0.35) * smooth_step((last - f) / settings_.fps / 0.35);
+    balance[f] += ramp / (2.0 * around + 1.0) * sum;
+  }
+}
+
+std::vector<FigurePose> Planner::balanced(const std::vector<FigurePose>& guide,
+                                          const std::vector<Vec2>& balance) const {
   const int last = static_cast<int>(guide.size()) - 1;
   std::vector<FigurePose> figures;
   for (int f = 0; f <= last; ++f)
     figures.push_back(f == 0 || f == last
                           ? guide[f]
                           : whole_.reach(balanced_goals(f, guide[f], balance[f], 20.0), guide[f], 6));
-  figures = smoothed(figures, 0.055);
+  return smoothed(figures, 0.055);
+}
+
+void Planner::fill_frames(GetUp& result) const {
+  constexpr int kRounds = 2;
+  constexpr double kSunk_m = 0.003;
+  const std::vector<FigurePose> reference = smoothed(references(), 0.11);
+  std::vector<Vec2> balance = balance_path();
+  std::vector<FigurePose> figures = balanced(guided(reference, balance), balance);
+  for (int round = 0; round < kRounds; ++round) {
+    mend_balance(figures, balance);
+    figures = balanced(figures, balance);
+  }
+  const int last = static_cast<int>(figures.size()) - 1;
   result.frames.push_back(lying_);
   for (int f = 1; f < last; ++f) {
-    const FigurePose figure = whole_.reach(balanced_goals(f, figures[f], balance[f], 40.0), figures[f], 4);
+    PoseGoals goals = balanced_goals(f, figures[f], balance[f], 40.0);
+    FigurePose figure = whole_.reach(goals, figures[f], 4);
+    goals.floor_weight = 800.0;
+    if (whole_.lowest(whole_.segments(figure)) < goals.floor_m - kSunk_m)
+      figure = whole_.reach(goals, figure, 6);
     result.frames.push_back(whole_.segments(whole_.inside(figure, radians(-0.5))));
   }
 }
 
 /// The least time from one pose to another: joints and pelvis turn no faster than people's do in get-ups.
-double unhurried_s(const FigurePose& from, const FigurePose& to) {
+double Planner::unhurried_s(const PlannedKey& from, const PlannedKey& to) const {
   constexpr double kJointSpeed = radians(250.0), kPelvisSpeed = radians(170.0);  // means
-  double least = angle_between(from.turn, to.turn) / kPelvisSpeed;
+  constexpr double kRise = 0.8;                                                  // m/s, mean
+  const double part_speed = 1.4 * std::sqrt(whole_.body().height_m / 1.75);      // m/s
+  double least = angle_between(from.figure.turn, to.figure.turn) / kPelvisSpeed;
   for (int j = 0; j < kJointCount; ++j)
-    least = std::max(least, angle_between(from.joints[j], to.joints[j]) / kJointSpeed);
+    least = std::max(least, angle_between(from.figure.joints[j], to.figure.joints[j]) / kJointSpeed);
+  const BodyPose was = whole_.segments(from.figure), is = whole_.segments(to.figure);
+  for (int c = 0; c < kContacts; ++c) {
+    const auto s = static_cast<std::size_t>(index(segment_of(c)));
+    if (from.on[c] != to.on[c])
+      least = std::max(least, (is[s] * points_[c] - was[s] * points_[c]).norm() / part_speed);
+  }
+  least = std::max(least, (whole_.centre_of_mass(is) - whole_.centre_of_mass(was)).y() / kRise);
   return least;
 }
 
 void Planner::start_lying(const Route& route, bool knees_free) {
   PlannedKey start;
   start.figure = figure_pose(lying_);
-  const double low_m = 0.05 * whole_.body().height_m;
+  const bool kneels = !(route.keys.front().touches & (kSeat | kBody));
+  start.lies = !kneels;
+  const double low_m = 0.015 * whole_.body().height_m;
   for (const bool left : {true, false}) {
     const int c = contact_index(knee, left);
     start.pin[c] = lying_[index(segment_of(c))];
     start.on[c] = !knees_free && (start.pin[c] * points_[c]).y() < low_m;
+    const int t = contact_index(toes, left);
+    start.pin[t] = lying_[index(segment_of(t))];
+    start.on[t] = kneels && (start.pin[t] * points_[t]).y() < 2.0 * low_m;
   }
   const int on_seat = contact_index(seat, true);
   start.pin[on_seat] = lying_[0];
   start.on[on_seat] = (route.keys.front().touches & kSeat) != 0;
-  seat_height_ = std::numeric_limits<double>::infinity();
-  for (int s = 0; s < kSegmentCount; ++s)
-    for (const Vec3& p : skins_[on_seat][s]) seat_height_ = std::min(seat_height_, (lying_[s] * p).y());
-  if (!std::isfinite(seat_height_)) seat_height_ = 0.0;
+  seat_height_ = lowest_of(skins_[on_seat], lying_);
+  trunk_height_ = lowest_of(trunk_, lying_);
   keys_ = {start};
 }
 
@@ -678,15 +871,18 @@ GetUp Planner::plan(const Route& route, double heading, const WayRound& side, do
   GetUp result;
   result.fps = settings_.fps;
   result.route = std::string(route.name);
-  for (const KeyPose& key : route.keys) {
+  PlannedKey stands;
+  for (const bool left : {true, false}) stands.on[contact_index(foot, left)] = true;
+  for (std::size_t k = 0; k < route.keys.size(); ++k) {
+    const KeyPose& key = route.keys[k];
     const PlannedKey last = keys_.back();
     if (!key.phase.empty()) result.phases.push_back({std::string(key.phase), last.time_s});
-    solve_key(key);
-    keys_.back().time_s =
-        last.time_s + std::max(tempo * key.seconds, unhurried_s(last.figure, keys_.back().figure));
+    solve_key(key, k + 1 < route.keys.size() ? touching(route.keys[k + 1]) : stands);
+    keys_.back().time_s = last.time_s + std::max(tempo * key.seconds, unhurried_s(last, keys_.back()));
   }
   end_standing(tempo * route.rise_s);
   result.phases.push_back({"stands", keys_.back().time_s});
+  stays_s_ = stays(balance_path());
   fill_frames(result);
   result.frames.push_back(standing_);
   result.planted = planted_parts();
@@ -717,6 +913,16 @@ bool feet_before_seat(const BodyPose& pose) {
 
 }  // namespace
 
+namespace {
+
+/// About how high the pelvis of a standing body is: some have big heads and short legs.
+double standing_hips(const ArticulatedBody& body) {
+  return body.joints[index(Joint::knee_l)].anchor_in_parent.norm() +
+         body.joints[index(Joint::ankle_l)].anchor_in_parent.norm() + 0.04 * body.height_m;
+}
+
+}  // namespace
+
 Lying lying_of(const ArticulatedBody& body, const BodyPose& pose) {
   const Rigid& pelvis = pose[index(Segment::pelvis)];
   const Rigid& chest = pose[index(Segment::chest)];
@@ -724,7 +930,7 @@ Lying lying_of(const ArticulatedBody& body, const BodyPose& pose) {
   const double trunk_up = (chest.rotation * kY).y();
   const double front_up = (chest.rotation * kX + pelvis.rotation * kX).y();
   const double right_up = (chest.rotation * kZ + pelvis.rotation * kZ).y();
-  if (pelvis.translation.y() > 0.38 * h) return Lying::upright;
+  if (pelvis.translation.y() > std::min(0.38 * h, 0.73 * standing_hips(body))) return Lying::upright;
   if (trunk_up > std::sin(radians(40.0)) && pelvis.translation.y() < 0.14 * h) return Lying::seated;
   if (pelvis.translation.y() < 0.14 * h && feet_before_seat(pose)) return Lying::seated;
   const bool aside = std::abs(right_up) > 1.25 * std::abs(front_up) + 0.2;
@@ -775,10 +981,15 @@ void vary(Random& random, KeyPose& key) {
   for (KeyLeg* leg : {&key.leg_a, &key.leg_b}) leg->abduction += random.uniform(-2.0, 3.0);
 }
 
-/// What is wrong with a get-up at its worst, in shares of what goes: parts that slide or sink, leaps.
+/// What is wrong with a get-up at its worst, in shares of what goes: parts that slide or sink, leaps, weight
+/// without support.
 double faults_of(const WholeBody& whole, const GetUp& get_up) {
-  constexpr double kSlide_m = 0.008, kSunk_m = 0.03, kSpeed_m_s = 4.5;
+  constexpr double kSlide_m = 0.008, kSunk_m = 0.03, kSpeed_m_s = 6.0, kOffBalance_m = 0.03;
   double worst = 0.0;
+  const std::vector<WeightOffset> weights =
+      weight_offsets(whole.body(), whole.skin(), get_up.frames, get_up.fps);
+  for (std::size_t f = static_cast<std::size_t>(0.3 * get_up.fps); f < weights.size(); ++f)
+    worst = std::max(worst, weights[f].least_m() / kOffBalance_m);
   for (std::size_t f = 1; f < get_up.frames.size(); ++f) {
     const BodyPose& frame = get_up.frames[f];
     worst = std::max(worst, -whole.lowest(frame) / kSunk_m);
@@ -798,6 +1009,11 @@ struct Way {
   Vec3 ahead;  // where he will face
   bool a_is_right;
 };
+
+bool knees_are_low(const ArticulatedBody& body, const BodyPose& lying) {
+  return std::min(lying[index(Segment::shank_l)].translation.y(),
+                  lying[index(Segment::shank_r)].translation.y()) < 0.08 * body.height_m;
+}
 
 Way choose(const ArticulatedBody& body, const BodyPose& lying, const GetUpSettings& settings,
            Random& random) {
@@ -820,7 +1036,8 @@ Way choose(const ArticulatedBody& body, const BodyPose& lying, const GetUpSettin
       return {route, to_feet(lying), open};
     }
     case Lying::kneeling:
-      if ((chest.rotation * kY).y() > 0.6) return {kneeling_route(), level(front), open};
+      if ((chest.rotation * kY).y() > 0.5)
+        return {knees_are_low(body, lying) ? kneeling_route() : crouched_route(), level(front), open};
       return {prone_route(), level(up), open};
     case Lying::prone:
       return {prone_route(), level(up), open};

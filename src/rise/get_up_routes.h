@@ -25,6 +25,7 @@ enum KeyTouch : unsigned {
   kToesA = 1u << 6,
   kToesB = 1u << 7,
   kSeat = 1u << 8,
+  kBody = 1u << 9,  // trunk and limbs as they lie: whatever is on the floor
 };
 
 struct KeyPose {
@@ -38,7 +39,6 @@ struct KeyPose {
   KeyArm arm_a, arm_b;
   KeyLeg leg_a, leg_b;
   unsigned touches;
-  double leniency_m;        // how far outside its support the weight may be here: a step is a small fall
   bool keeps_body = false;  // trunk and legs stay as they are: arms and head move first
 };
 
@@ -53,5 +53,6 @@ Route squat_route();       // sits, rocks onto the feet, squats
 Route half_kneel_route();  // sits to one side, half kneels
 Route prone_route();       // pushes up, all fours, half kneels
 Route kneeling_route();    // kneels upright: one foot forward, stands
+Route crouched_route();    // on his feet, knees bent: stands
 Route side_route();        // lies on side b: turns over side b onto hands and knees
 }  // namespace ukemi

@@ -35,6 +35,7 @@ std::optional<GetUpTimes> add_get_up(const ArticulatedBody& body, const RangeOfM
   times.route = planned->route;
   times.begins_s = static_cast<double>(frames.size() - 1) / trajectory.fps;
   times.phases = planned->phases;
+  times.planted = planned->planted;
   for (GetUpPhase& phase : times.phases) phase.time_s += times.begins_s;
   times.stands_s = times.phases.back().time_s;
   frames.insert(frames.end(), planned->frames.begin() + 1, planned->frames.end());

@@ -17,7 +17,8 @@ struct GetUpTimes {
   std::string route;
   double begins_s = 0.0;
   double stands_s = 0.0;
-  std::vector<GetUpPhase> phases;  // the last is "stands"
+  std::vector<GetUpPhase> phases;    // the last is "stands"
+  std::vector<PlantedPart> planted;  // frames counted from that of begins_s
 };
 
 /// Keeps the last frame until `until_s`; props stay where they are.

@@ -196,9 +196,10 @@ FigurePose WholeBody::inside(FigurePose figure, double margin) const {
 void WholeBody::add_balance(const PoseGoals& goals, const BodyPose& segments, Equations& equations) const {
   const Vec3 com = centre_of_mass(segments);
   const Vec2 at(com.x(), com.z());
-  const Vec2 way = goals.support_weight > 0.0 ? way_into(goals.support, at) : Vec2(Vec2::Zero());
-  const bool outside = way.norm() > 1e-6;
-  if (!outside && !goals.balance) return;
+  std::vector<Vec2> ways;
+  for (const std::vector<Vec2>& support : goals.supports)
+    if (const Vec2 way = way_into(support, at); way.norm() > 1e-6) ways.push_back(way);
+  if (ways.empty() && !goals.balance) return;
   std::array<Row, 3> mean{Row::Zero(), Row::Zero(), Row::Zero()};
   for (int s = 0; s < kSegmentCount && equations.with_step; ++s) {
     const auto rows =
@@ -209,7 +210,7 @@ void WholeBody::add_balance(const PoseGoals& goals, const BodyPose& segments, Eq
     equations.add(mean[0], want.x(), weight);
     equations.add(mean[2], want.y(), weight);
   };
-  if (outside) add(way, goals.support_weight);
+  for (const Vec2& way : ways) add(way, goals.support_weight);
   if (goals.balance) add(*goals.balance - at, goals.balance_weight);
 }
 

@@ -66,13 +66,13 @@ struct PoseGoals {
   std::vector<TurnGoal> turns;
   std::vector<AxisGoal> axes;
   std::vector<TouchGoal> touches;
-  std::vector<Vec2> support;    // corners (x, z) about which the centre of mass stays; empty: anywhere
-  double support_weight = 0.0;  // 1/m
-  std::optional<Vec2> balance;  // where the centre of mass lies (x, z)
-  double balance_weight = 0.0;  // 1/m
-  double floor_weight = 400.0;  // of skin below y = 0, 1/m
-  double floor_m = 0.0;         // height that skin keeps, where it does not touch on purpose
-  double margin = 0.0;          // inside their ranges that joints keep, radians
+  std::vector<std::vector<Vec2>> supports;  // hulls (x, z): the centre of mass stays inside each of them
+  double support_weight = 0.0;              // 1/m
+  std::optional<Vec2> balance;              // where the centre of mass lies (x, z)
+  double balance_weight = 0.0;              // 1/m
+  double floor_weight = 400.0;              // of skin below y = 0, 1/m
+  double floor_m = 0.0;                     // height that skin keeps, where it does not touch on purpose
+  double margin = 0.0;                      // inside their ranges that joints keep, radians
 };
 
 struct Equations;
