@@ -1,7 +1,10 @@
-// Tone: what it asks of which joint, and how long.
+// Tone: what it asks of which joint, and how long; and what is left of a man's muscles when he is knocked
+// out.
 #include "behave/tone.h"
 
+#include "behave/alert.h"
 #include "behave/fallen_man.h"
+#include "behave/knocked_out.h"
 
 namespace ukemi {
 namespace {
@@ -33,6 +36,35 @@ TEST(Tone, FadesSmoothlyInItsTime) {
   EXPECT_NEAR(cap_n_m(Joint::hip_r, 1.0, 0.15), 150.0 * 0.84375, 1e-9);
   EXPECT_NEAR(cap_n_m(Joint::hip_r, 1.0, 0.3), 75.0, 1e-9);
   EXPECT_NEAR(cap_n_m(Joint::hip_r, 1.0, 0.6), 0.0, 1e-9);
+}
+
+/// What a man who is knocked out at 0.5 s asks of his muscles, N m/rad over all joints.
+double stiffness_at(double time_s) {
+  const test::Faller faller;
+  const ArticulatedBody& body = faller.man.body;
+  auto alive = std::make_unique<Alert>(body, faller.man.range, faller.strength, faller.man.segments, 9.81,
+                                       StandSettings{}, FallSettings::alert(), false);
+  KnockedOut man(std::move(alive), body, {Knockout::At::time, 0.5}, {0.3, 0.6});
+  Senses senses = faller.senses(Vec3::Zero(), Vec3::Zero());
+  man.start(senses);
+  for (int i = 1; 0.01 * i <= time_s + 1e-9; ++i) {
+    senses.time_s = 0.01 * i;
+    man.observe(senses, 0.01);
+  }
+  Goals goals;
+  man.drive(time_s, goals);
+  double sum = 0.0;
+  for (const auto& joint : goals.joints)
+    for (const JointGoal& goal : joint) sum += goal.stiffness_n_m_rad;
+  return sum;
+}
+
+TEST(KnockedOut, MusclesLetGoInAnEighthOfASecond) {
+  const double awake = stiffness_at(0.49);
+  EXPECT_GT(awake, 1000.0);
+  EXPECT_NEAR(stiffness_at(0.56), 0.5 * awake, 0.02 * awake);
+  EXPECT_LT(stiffness_at(0.60), 0.1 * awake);
+  EXPECT_EQ(stiffness_at(0.63), 0.0);
 }
 
 }  // namespace
