@@ -70,6 +70,21 @@ TEST(Bake, ReportAndClipAloneGiveEverySegmentsOrientation) {
   EXPECT_LT(rebuild_error_deg(bake_of(mannequin(), settings)), 0.01);
 }
 
+TEST(Bake, ReportTellsSettingsAsTheCommandLineHasThem) {
+  BakeSettings settings;
+  settings.simulation.duration_s = 0.2;
+  settings.keys.tolerance_m = 0.002;
+  settings.simulation.fps = 50.0;
+  settings.lead_s = 0.1;
+  settings.strength = 1.5;
+  const Json report = bake_of(mannequin(), settings).report;
+  EXPECT_DOUBLE_EQ(report["settings"]["key_error_mm"], 2.0);
+  EXPECT_DOUBLE_EQ(report["settings"]["fps"], 50.0);
+  EXPECT_DOUBLE_EQ(report["settings"]["lead_s"], 0.1);
+  EXPECT_DOUBLE_EQ(report["impact"]["time_s"], 0.1);
+  EXPECT_EQ(report["clip"]["frames"], 16);
+}
+
 TEST(Bake, ReportAndClipGiveTheSegmentsOfOtherPeoplesCharacters) {
   const auto data = extra_data();
   if (!data) GTEST_SKIP() << kNoExtraData;

@@ -87,6 +87,22 @@ TEST(Lead, HoldsTheStartPoseAndLeavesTheImpactFrameAsItIs) {
   }
 }
 
+TEST(Tail, GoesOnAfterRestForAsLongAsAskedOrToTheEndOfTheSimulation) {
+  BakeSettings settings;
+  settings.preset = "punch";
+  settings.strength = 0.3;
+  settings.simulation.duration_s = 3.0;
+  for (const double hold_s : {0.1, 0.4}) {
+    settings.hold_s = hold_s;
+    const BakedClip outcome = baked(settings);
+    ASSERT_TRUE(outcome.figures.rest_time_s);
+    ASSERT_LT(*outcome.figures.rest_time_s, 2.5);
+    EXPECT_NEAR(outcome.timeline.clip.duration_s(), *outcome.figures.rest_time_s + hold_s, 1.0 / 60.0);
+  }
+  settings.until_rest = false;
+  EXPECT_NEAR(baked(settings).timeline.clip.duration_s(), 3.0, 1e-9);
+}
+
 TEST(Recovery, EndsInTheStartPoseOnTheFloorWithoutAPop) {
   BakeSettings settings = flinch();
   settings.recover_s = 0.5;

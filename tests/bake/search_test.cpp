@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/bake.h"
+#include "bake/take.h"
 #include "base/character_path.h"
 #include "load/load.h"
 
@@ -79,6 +80,30 @@ TEST(Search, WhatNoPersonCouldDoIsSaidOrHelpedTo) {
   EXPECT_LT(helped.clip.figures.help_n_s, 400.0);
   EXPECT_GT(helped.clip.trials, 5);
   EXPECT_LT(helped.clip.figures.energy_gain_max_j, 6.0);
+}
+
+TEST(Search, HelpIsTheLeastOfEightShares) {
+  BakeSettings settings = blow(110.0, "back");
+  settings.outcome = Wanted::stand;
+  settings.assist = true;
+  Diagnostics diagnostics;
+  const auto prepared = prepare_bake(mannequin(), settings, diagnostics);
+  ASSERT_TRUE(prepared);
+  // What a force gives from outside where it keeps the body up; nothing where he falls.
+  const auto given_n_s = [&](double most_n) -> std::optional<double> {
+    BehaviourSettings behaviour = prepared->behaviour;
+    behaviour.choice.help = {most_n, false};
+    behaviour.must_stand = true;
+    const auto run = simulate_take(settings, *prepared, behaviour, diagnostics);
+    EXPECT_TRUE(run);
+    return run->behaviour.fall_begins_s ? std::nullopt : std::optional(run->figures.help_n_s);
+  };
+  double enough_n = 0.05 * prepared->body.mass_kg * settings.simulation.gravity;
+  while (!given_n_s(enough_n)) enough_n *= 2.0;
+  std::optional<double> least;
+  for (int i = 1; i <= 8 && !least; ++i) least = given_n_s(enough_n * (0.5 + i / 16.0));
+  ASSERT_TRUE(least);
+  EXPECT_NEAR(baked(settings).clip.figures.help_n_s, *least, 1e-9);
 }
 
 TEST(Search, ALimpBodyThatFellIsNotTakenForOneThatStood) {

@@ -52,6 +52,23 @@ TEST_F(Files, RefusesWhatIsNoFile) {
   EXPECT_NE(read_file(folder / "big", 10).error().what.find("limit"), std::string::npos);
 }
 
+TEST_F(Files, WhatCannotTakeItsPlaceLeavesNothingBehind) {
+  {
+    PendingFiles files;
+    ASSERT_TRUE(files.add(folder / "taken", std::string_view("x")));
+    fs::create_directory(folder / "taken");  // meanwhile: a name in the way that cannot be replaced
+    EXPECT_EQ(files.commit().error().kind, ErrorKind::output);
+  }
+  EXPECT_EQ(names(), std::vector<std::string>{"taken"});
+}
+
+TEST_F(Files, OfAPathThatGoesUpAreNotBelowTheFolder) {
+  EXPECT_EQ(file_below(folder, "a/b.png"), folder / "a/b.png");
+  EXPECT_EQ(file_below(folder, "../b.png"), std::nullopt);
+  EXPECT_EQ(file_below(folder, "a/../b.png"), std::nullopt);
+  EXPECT_EQ(file_below(folder / "not_there_yet", "../b.png"), std::nullopt);
+}
+
 TEST_F(Files, FailedWriteLeavesTheOldFile) {
   fs::create_directory(folder / "target");
   EXPECT_EQ(write_file(folder / "target", std::string_view("x")).error().kind, ErrorKind::output);

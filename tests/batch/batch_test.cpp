@@ -58,6 +58,15 @@ TEST_F(BatchOfOne, KeepsWhatTheSameProgramBakedAndBakesAgainWithAnother) {
   EXPECT_EQ(plan("another").count(Plan::bake), 1u);
 }
 
+TEST_F(BatchOfOne, TriesAgainWhatFailed) {
+  std::ofstream(folder_ / "r.toml") << "format = 1\ncharacters = [\"mannequin\"]\n[settings]\n"
+                                       "clip = \"no such clip\"\n[[matrix]]\nhit = [\"head\"]\n";
+  run("one");
+  EXPECT_NE(manifest().find("\"failed\""), std::string::npos) << manifest();
+  EXPECT_EQ(plan("one").count(Plan::bake), 1u);
+  EXPECT_EQ(plan("one").count(Plan::keep), 0u);
+}
+
 TEST_F(BatchOfOne, SaysNothingOfTheProgramInItsManifest) {
   run("one");
   const std::string first = manifest();

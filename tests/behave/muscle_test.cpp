@@ -67,6 +67,7 @@ TEST(Muscles, OfTheLeftMirrorThoseOfTheRight) {
   const JointStrength& right = strength[index(Joint::hip_r)];
   EXPECT_DOUBLE_EQ(left.most_n_m.x(), -right.least_n_m.x());
   EXPECT_DOUBLE_EQ(left.least_n_m.y(), -right.most_n_m.y());
+  EXPECT_DOUBLE_EQ(left.least_n_m.x(), -right.most_n_m.x());
   EXPECT_DOUBLE_EQ(left.most_n_m.z(), right.most_n_m.z());
   EXPECT_NE(right.most_n_m.x(), -right.least_n_m.x());
 }

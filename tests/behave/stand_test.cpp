@@ -57,6 +57,26 @@ TEST(Stand, QuietlyForTenSecondsWithoutABlow) {
   EXPECT_GT(run.figures.muscle_share_max, 0.02);
 }
 
+/// When two runs first differ, s.
+double apart_from_s(const SimulationResult& a, const SimulationResult& b) {
+  for (std::size_t f = 0; f < a.trajectory.frames.size(); ++f)
+    for (int s = 0; s < kSegmentCount; ++s)
+      if ((a.trajectory.frames[f][s].translation - b.trajectory.frames[f][s].translation).norm() > 1e-6)
+        return static_cast<double>(f) / a.trajectory.fps;
+  return 1e9;
+}
+
+TEST(Stand, BalanceActsAfterItsLatency) {
+  const auto with = [](double latency_s) {
+    BehaviourSettings behaviour;
+    behaviour.latency_s = latency_s;
+    return lives({Segment::chest, -Vec3::UnitX(), 10.0}, behaviour, 0.4);
+  };
+  const SimulationResult late = with(0.30);
+  EXPECT_NEAR(apart_from_s(with(0.10), late), 0.10, 0.03);
+  EXPECT_NEAR(apart_from_s(with(0.20), late), 0.20, 0.03);
+}
+
 TEST(Stand, SwaysBackFromAWeakBlowWithPlantedFeet) {
   for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 0, 1)}) {
     const SimulationResult run = lives({Segment::chest, way, 8.0});

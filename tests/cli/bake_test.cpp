@@ -190,6 +190,17 @@ TEST_F(Bake, OfAFileOfMotionStartsFromItsOwnClip) {
   expect_human(report, kMovingFloor);
 }
 
+TEST_F(Bake, TwoClipsAreComparedWithAStatus) {
+  for (const char* from : {"left", "right"})
+    succeed({"bake", "mannequin", "--hit", "head", "--from", from, "--duration", "0.3", "-o",
+             std::string(from) + ".glb"});
+  EXPECT_EQ(run({"diff", "left.glb", "left.glb"}).status, 0);
+  const Ran other = run({"diff", "left.glb", "right.glb"});
+  EXPECT_EQ(other.status, 1) << other.err;
+  EXPECT_EQ(other.out.rfind("different: ", 0), 0u) << other.out;
+  EXPECT_EQ(run({"diff", "left.glb", "right.glb", "--json"}).status, 1);
+}
+
 TEST_F(Bake, IsReadBackByTheOtherCommands) {
   succeed({"bake", "mannequin", "--hit", "head", "--from", "left", "--behaviour", "limp", "--duration", "3",
            "-o", "a.glb", "-o", "a.bvh"});

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/animation.h"
 #include "base/files.h"
 #include "export/export.h"
 #include "export/puppet.h"
@@ -443,6 +444,28 @@ TEST(StickMesh, HasNoSpikeFromTheSceneToTheHipsAndNoSlivers) {
   EXPECT_GT(nearest_x, 490.0) << "no bone from the origin";
   EXPECT_NEAR(spine_width, 0.012 * 95.0, 0.012 * 95.0 * 0.5);  // 13 % of its length would be 0.65
   EXPECT_GT(spine_width, 0.7);
+}
+
+TEST(Gltf, ShortRotationsAreReadBackAsTheRotationsThatTheyAre) {
+  test::Puppet puppet = test::make_puppet();
+  ReducedClip clip = turn_of(5);
+  clip.short_rotations = true;
+  const auto bytes = write_glb(puppet.character, puppet.humanoid, clip, {});
+  ASSERT_TRUE(bytes) << bytes.error().message();
+  Diagnostics diagnostics;
+  const auto read = read_gltf(*bytes, "out.glb", diagnostics);
+  ASSERT_TRUE(read) << read.error().message();
+  const Animation& animation = read->animations.back();
+  const auto turned_deg = [&](double time_s) {
+    return degrees(log_rotation(sample(read->skeleton, animation, time_s)[5].rotation).x());
+  };
+  EXPECT_NEAR(turned_deg(0.0), 0.0, 0.01);
+  EXPECT_NEAR(turned_deg(0.25), 45.0, 0.01);
+  EXPECT_NEAR(turned_deg(0.5), 90.0, 0.01);
+  ASSERT_EQ(animation.tracks.size(), 1u);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_NEAR(Eigen::Map<const Eigen::Vector4d>(animation.tracks[0].values.data() + 4 * k).norm(), 1.0,
+                1e-4);
 }
 
 }  // namespace

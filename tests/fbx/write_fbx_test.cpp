@@ -317,5 +317,30 @@ TEST(WriteFbx, FilesOfOthersAreKeptAndReproduceAnyMotion) {
   EXPECT_GE(files, 12);
 }
 
+TEST(WriteFbx, TheTakeBeginsAtZeroAndLastsAsLongAsTheClip) {
+  constexpr std::int64_t kSecond = 46186158000;  // ticks
+  const test::Puppet puppet = test::make_puppet();
+  const Clip clip = test::falling_clip(puppet.character.skeleton, 91, 60.0);
+  FbxTree tree = tree_of(written(puppet.character, puppet.humanoid, clip));
+  const FbxRecord* objects = section(tree, "Objects");
+  ASSERT_NE(objects, nullptr);
+  std::map<std::string, std::int64_t> spans;
+  int curves = 0;
+  for (const FbxRecord& object : objects->children) {
+    if (object.name == "AnimationStack")
+      for (const FbxRecord& property : child_of(object, "Properties70")->children)
+        spans[std::string(*text_at(property, 0))] = *integer_at(property, 4);
+    if (object.name != "AnimationCurve") continue;
+    ++curves;
+    const auto ticks = numbers_at(*child_of(object, "KeyTime"), 0);
+    ASSERT_TRUE(ticks);
+    EXPECT_EQ(ticks->front(), 0.0);
+    EXPECT_EQ(ticks->back(), 1.5 * static_cast<double>(kSecond));
+  }
+  EXPECT_GT(curves, 100);
+  EXPECT_EQ(spans["LocalStart"], 0);
+  EXPECT_EQ(spans["LocalStop"], kSecond * 3 / 2);
+}
+
 }  // namespace
 }  // namespace ukemi

@@ -239,6 +239,15 @@ TEST(Judgement, ContactTimeAndSpeedOfASteadyFallAreKnown) {
   EXPECT_EQ(value(judgement, 14, "head_speed_m_s"), 0.0);
 }
 
+TEST(Judgement, ContactSpeedIsThatBeforeTheFloorStopsThePelvis) {
+  const auto stopped = [](double time_s, BodyPose& pose) {
+    shift_above_knees(pose, Vec3(0.0, -std::clamp(1.5 * (time_s - 0.5), 0.0, 0.725), 0.0));
+  };
+  const Judgement judgement = judge(stick_motion(3.0, stopped), blow_at(0.0));
+  ASSERT_TRUE(judgement.fall && judgement.fall->pelvis_down);
+  EXPECT_NEAR(judgement.fall->pelvis.speed_m_s, 1.5, 0.15);
+}
+
 TEST(Judgement, AKnockedOutManNeedsNoHands) {
   const JudgedMotion motion = stick_motion(3.0, sink(1.5));
   EXPECT_TRUE(passed(judge(motion, blow_at(0.0)), 15).has_value());

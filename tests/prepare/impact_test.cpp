@@ -128,6 +128,23 @@ TEST(Scene, EveryWayOfHittingCarriesTheSameMomentum) {
   }
 }
 
+TEST(Scene, StrengthMultipliesEveryWayOfHitting) {
+  for (const SceneKind kind : {SceneKind::ball, SceneKind::push, SceneKind::impulse, SceneKind::fall}) {
+    BakeSettings settings;
+    settings.scene = kind;
+    const auto plain = scene_of(settings, BodyPose{});
+    settings.strength = 2.5;
+    const auto strong = scene_of(settings, BodyPose{});
+    ASSERT_TRUE(plain && strong);
+    EXPECT_NEAR(strong->ball_speed_m_s, 2.5 * plain->ball_speed_m_s, 1e-9);
+    EXPECT_NEAR(strong->push_force_n, 2.5 * plain->push_force_n, 1e-9);
+    EXPECT_NEAR(strong->impulse_n_s, 2.5 * plain->impulse_n_s, 1e-9);
+    EXPECT_NEAR(strong->tip_speed_m_s, 2.5 * plain->tip_speed_m_s, 1e-9);
+    EXPECT_EQ(strong->push_duration_s, plain->push_duration_s);
+    EXPECT_EQ(strong->ball_mass_kg, plain->ball_mass_kg);
+  }
+}
+
 /// Standing, feet apart, the left one lifted.
 BodyPose standing() {
   BodyPose pose;

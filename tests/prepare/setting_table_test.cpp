@@ -47,6 +47,22 @@ TEST(Settings, ValuesGoInAndComeOutAgain) {
   }
 }
 
+TEST(Settings, AreHeldInTheUnitsThatTheProgramWorksIn) {
+  const auto held = [](const char* name, const char* value, const auto& access) {
+    BakeSettings settings;
+    EXPECT_TRUE((*find_setting(name))->set(settings, value)) << name;
+    return static_cast<double>(access(settings));
+  };
+  EXPECT_DOUBLE_EQ(held("key-error-mm", "2", [](auto& s) { return s.keys.tolerance_m; }), 0.002);
+  EXPECT_DOUBLE_EQ(held("bvh-unit", "cm", [](auto& s) { return *s.bvh_metres_per_unit; }), 0.01);
+  EXPECT_DOUBLE_EQ(held("unit", "in", [](auto& s) { return *s.humanoid.metres_per_unit; }), 0.0254);
+  EXPECT_DOUBLE_EQ(held("fps", "30", [](auto& s) { return s.simulation.fps; }), 30.0);
+  EXPECT_DOUBLE_EQ(held("rate", "fixed:480", [](auto& s) { return s.simulation.fixed_hz; }), 480.0);
+  EXPECT_DOUBLE_EQ(held("strength", "1.5", [](auto& s) { return s.strength; }), 1.5);
+  EXPECT_DOUBLE_EQ(held("from", "30,10", [](auto& s) { return degrees(s.from.azimuth); }), 30.0);
+  EXPECT_DOUBLE_EQ(BakeSettings().keys.tolerance_m, 0.0005);
+}
+
 TEST(Settings, AKnockoutIsATimeOrAMoment) {
   const auto setting = find_setting("knockout-at");
   ASSERT_TRUE(setting);

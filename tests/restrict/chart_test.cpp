@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "restrict/active.h"
 #include "restrict/range_of_motion.h"
 
 namespace ukemi {
@@ -109,6 +110,35 @@ TEST(Range, WideningHoldsTheChartWithItsMarginAndKeepsTheRest) {
   EXPECT_NEAR(range.twist_max, 0.34, 1e-15);
   for (const Vec2& corner : before) EXPECT_LE(polygon_distance(range.polygon, corner), 1e-12);
   EXPECT_NEAR(widen_to_hold(range, outside, 0.05), 0.0, 1e-12) << "a second time does nothing";
+}
+
+TEST(Widening, HoldsAPoseByTheMarginWhereItIsNearTheEdgeAndOutside) {
+  const auto square = [] {
+    JointRange range;
+    range.polygon = {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
+    range.twist_min = -0.3;
+    range.twist_max = 0.3;
+    return range;
+  };
+  const double margin = 0.05;
+  JointRange deep = square(), near = square(), outside = square();
+  EXPECT_EQ(widen_to_hold(deep, {Vec2(0.44, 0.0), 0.0}, margin), 0.0);
+  EXPECT_EQ(deep.polygon.size(), 4u);
+  EXPECT_NEAR(widen_to_hold(near, {Vec2(0.48, 0.0), 0.0}, margin), 0.03, 1e-12);
+  EXPECT_LE(polygon_distance(near.polygon, Vec2(0.48, 0.0)), -margin + 1e-12);
+  EXPECT_NEAR(widen_to_hold(outside, {Vec2(0.6, 0.0), 0.4}, margin), 0.15, 1e-12);
+  EXPECT_LE(polygon_distance(outside.polygon, Vec2(0.6, 0.0)), -margin + 1e-12);
+  EXPECT_NEAR(outside.twist_max, 0.45, 1e-12);
+  EXPECT_EQ(outside.twist_min, -0.3);
+}
+
+TEST(Thresholds, AreDegreesPerSecondInTheFileAndRadiansInTheProgram) {
+  const auto thresholds = load_active_thresholds("");
+  ASSERT_TRUE(thresholds) << thresholds.error().message();
+  // As assets/limits/active.toml has them.
+  EXPECT_NEAR((*thresholds)[index(Joint::spine)].x(), radians(120.0), 1e-12);
+  EXPECT_NEAR((*thresholds)[index(Joint::elbow_l)].y(), radians(305.0), 1e-12);
+  EXPECT_EQ((*thresholds)[index(Joint::elbow_l)], (*thresholds)[index(Joint::elbow_r)]);
 }
 
 }  // namespace

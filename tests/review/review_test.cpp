@@ -262,6 +262,7 @@ TEST_F(Reviewed, MarginsAreTheExcessOutsideAndTheRoomInside) {
       rom_paths(character->skeleton, *humanoid, *load_range_of_motion("human"), sampled.frames, frames);
   ASSERT_EQ(clip["rom"]["joints"].size(), 17u);
   const Json report = Json::parse(read(folder / "mannequin/head.json"));
+  const RangeOfMotion human = *load_range_of_motion("human");
   int compared = 0;
   for (const Json& joint : clip["rom"]["joints"]) {
     const std::string joint_name = joint["name"];
@@ -274,6 +275,11 @@ TEST_F(Reviewed, MarginsAreTheExcessOutsideAndTheRoomInside) {
       EXPECT_NEAR(a_z[f] * a_z_scale, degrees(path.charts[f].swing.y()), a_z_scale);
       if (report["limits"]["widened_deg"].contains(joint_name)) continue;
       EXPECT_NEAR(std::max(whole[f] * scale, 0.0), path.excess_deg[f], scale) << joint_name;
+      const JointRange& range = human.joints[index(*joint_named(joint_name))];
+      const SwingTwist& chart = path.charts[f];
+      const double twist = std::max(chart.twist - range.twist_max, range.twist_min - chart.twist);
+      EXPECT_NEAR(whole[f] * scale, degrees(std::max(polygon_distance(range.polygon, chart.swing), twist)),
+                  scale);
       ++compared;
     }
   }

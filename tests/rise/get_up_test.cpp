@@ -270,6 +270,30 @@ TEST(GetUp, TheSameSeedGivesTheSameBitsAndAnotherSeedAnotherMotion) {
   EXPECT_GT((motion(1) - motion(2)).norm(), 1e-3);
 }
 
+/// How far the chest leans on the way up, degrees, at the mean.
+double mean_lean_deg(const GetUp& get_up) {
+  double sum = 0.0;
+  for (const BodyPose& frame : get_up.frames)
+    sum += std::acos(std::clamp((frame[index(Segment::chest)].rotation * Vec3::UnitY()).y(), -1.0, 1.0));
+  return degrees(sum / static_cast<double>(get_up.frames.size()));
+}
+
+TEST(GetUp, AQuickManIsFasterAndAHurtOneSlowerAndBent) {
+  const Fallen man = fallen(load("mannequin"), "mannequin", limp_fall(Segment::chest, 0));
+  const auto in_style = [&](GetUpStyle style) {
+    GetUpSettings settings;
+    settings.seed = 3;
+    settings.style = style;
+    return *get_up_of(man, settings);
+  };
+  const GetUp plain = in_style(GetUpStyle::plain), hurt = in_style(GetUpStyle::hurt);
+  const GetUp quick = in_style(GetUpStyle::quick);
+  EXPECT_LT(quick.frames.size(), 0.92 * static_cast<double>(plain.frames.size()));
+  EXPECT_GT(hurt.frames.size(), 1.08 * static_cast<double>(plain.frames.size()));
+  EXPECT_EQ(hurt.route, plain.route);
+  EXPECT_GT(mean_lean_deg(hurt), mean_lean_deg(plain) + 2.0);
+}
+
 TEST(GetUp, WhoStandsIsRefused) {
   Fallen man = fallen(load("mannequin"), "mannequin", limp_fall(Segment::chest, 0));
   man.lying = man.before = man.standing;

@@ -188,6 +188,9 @@ TEST(Depth, OfFeetInTheFloor) {
   ASSERT_GT(before, 0.0);
   for (Rigid& segment : pose) segment.translation.y() -= 0.03;
   EXPECT_NEAR(contacts_of(man, pose).floor_penetration, before + 0.03, 1e-9);
+  EXPECT_TRUE(contacts_of(man, pose).ground);
+  for (Rigid& segment : pose) segment.translation.y() += 0.2;
+  EXPECT_FALSE(contacts_of(man, pose).ground);
 }
 
 TEST(Depth, AFootThatHasComeOutOfTheFloorMeetsItAgain) {

@@ -195,6 +195,25 @@ TEST(Compare, FindsJointsOutsideTheirRangeWithStopsPerAxisAndNoneWithOurs) {
             method(comparison, "b").angular_momentum_mean_kg_m2_s);
 }
 
+TEST(Compare, CountsTheRunsThatExplodedAndLeavesThemOutOfTheMeans) {
+  CompareSettings settings;
+  settings.hits = 14;
+  settings.duration_s = 1.0;
+  const Comparison comparison = compared(settings);
+  const MethodFigures& euler = method(comparison, "b-euler");
+  EXPECT_EQ(euler.exploded, 1);
+  for (const MethodFigures& figures : comparison.methods) {
+    double sum = 0.0;
+    int exploded = 0;
+    for (int i = 0; i < settings.hits; ++i) {
+      exploded += figures.exploded_hits[i];
+      if (!figures.exploded_hits[i]) sum += figures.turning_by_hit_rad_s[i];
+    }
+    EXPECT_EQ(figures.exploded, exploded) << figures.method.name;
+    EXPECT_NEAR(figures.turning_mean_rad_s, sum / (settings.hits - exploded), 1e-9) << figures.method.name;
+  }
+}
+
 TEST(Compare, GivesTheSameFiguresForTheSameSeedOnAnyNumberOfThreads) {
   CompareSettings settings = short_settings();
   settings.threads = 1;
