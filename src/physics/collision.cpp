@@ -194,7 +194,6 @@ Contacts Collision::find(bool whole_soles) const {
     if (pair.kind != PairKind::floor || found.depth[p] <= 0.0) continue;
     found.floor_penetration = std::max(found.floor_penetration, found.depth[p]);
     found.ground = true;
-    found.ground_beyond_feet = found.ground_beyond_feet || !is_foot(b.segment);
   }
   return found;
 }

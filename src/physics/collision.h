@@ -34,7 +34,6 @@ struct Contacts {
   std::vector<double> overlap;  // the same with what was accepted of it at the start
   double floor_penetration = 0.0, self_penetration = 0.0;
   bool ground = false;  // the body touches the floor
-  bool ground_beyond_feet = false;
 };
 
 class Collision {
