@@ -39,9 +39,9 @@ constexpr double kBearing_s = 0.02;    // until a foot off the ground pushes no 
 constexpr double kSlipped = 0.10;      // m: a foot that was moved so far stands there now
 constexpr double kSinking = 0.82, kSunk = 0.72;  // height of the centre of mass over that at home
 constexpr double kToesClear = 0.03;              // m: toes of a foot in the air are so far from the ground
-constexpr double kLevelBy = 0.5;                 // of the step: then the foot is level
-constexpr double kSwungUntil = 0.9;              // of the step: then it comes down
-constexpr double kHeel = 1.03;                   // of the leg, by the heel
+constexpr double kLevelBy = 0.8, kSwungThroughLevelBy = 0.5;  // of the step: then the foot is level
+constexpr double kSwungUntil = 0.9;                           // of the step: then it comes down
+constexpr double kHeel = 1.03;                                // of the leg, by the heel
 
 }  // namespace
 
@@ -608,7 +608,8 @@ Vec3 Standing::swing_ankle(double time_s) const {
   at.y() +=
       m(most) * bump * std::clamp((m(0.09) - swing_.from.y() + leg_in_air.home_ankle_m) / m(0.09), 0.0, 1.0) -
       m_s(0.5) * std::max(0.0, time_s - swing_.lift_s - swing_.span_s);
-  // The toes of a foot that has not come level yet clear the ground too.
+  if (!under_way_) return at;
+  // The toes of a foot that swings through have not come level yet: they clear the ground too.
   const Quat turned = swing_foot(phase, foot);
   double lowest = 0.0;
   for (const Vec3& corner : leg_in_air.sole) lowest = std::min(lowest, (turned * corner).y());
@@ -619,7 +620,7 @@ Vec3 Standing::swing_ankle(double time_s) const {
 
 /// Orientation of the foot in the air, on its way to `level`.
 Quat Standing::swing_foot(double phase, const Quat& level) const {
-  return swing_.from_foot.slerp(min_jerk(phase / kLevelBy), level);
+  return swing_.from_foot.slerp(min_jerk(phase / (under_way_ ? kSwungThroughLevelBy : kLevelBy)), level);
 }
 
 LegPosture Standing::swinging_posture(const Vec3& hip_at, double time_s) const {
