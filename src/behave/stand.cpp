@@ -33,6 +33,7 @@ constexpr double kAhead_s = 0.004;  // postures are compared over so long
 constexpr double kFastest_s = 0.22;
 
 constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point so far beyond the feet
+constexpr double kOutOfStride = 1.4;   // the same while a stride that has begun is not at its end
 constexpr double kLongestStep = 1.03;  // of the leg
 constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
 constexpr double kBearing_s = 0.02;    // until a foot off the ground pushes no more
@@ -429,7 +430,10 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
     closings_ = 0;
   }
   if (lost_s_ || active(senses.time_s) <= 0.0) return;
-  const double reach = settings_.most_steps == 0 ? m(0.25) : kOutOfReach * physique_.leg_length_m;
+  const bool first_stride = under_way_ && phase_ == Phase::swing && steps_.size() == 1;
+  const double reach = settings_.most_steps == 0
+                           ? m(0.25)
+                           : (first_stride ? kOutOfStride : kOutOfReach) * physique_.leg_length_m;
   const double tilt = (senses.pose[0].rotation * home_[0].rotation.conjugate() * Vec3::UnitY()).y();
   // A long robe touches the ground beside feet that stand.
   const bool touches =
