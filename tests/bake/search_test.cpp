@@ -56,7 +56,7 @@ TEST(Search, WhoWouldStandFallsWhereTheDirectorSaysSo) {
 }
 
 TEST(Search, WhoWouldFallStandsWhereAPersonCould) {
-  BakeSettings settings = blow(60.0, "225");
+  BakeSettings settings = blow(60.0, "45");
   EXPECT_TRUE(baked(settings).fell());
   settings.outcome = Wanted::stand;
   const Baked stood = baked(settings);
@@ -112,7 +112,7 @@ Helps helps_for(double n_s, const std::string& from) {
 }
 
 TEST(Search, HelpIsTheLeastOfEightShares) {
-  for (const auto& [n_s, from] : {std::pair(100.0, "back"), {115.0, "back"}}) {
+  for (const auto& [n_s, from] : {std::pair(100.0, "back"), {95.0, "back"}}) {
     const Helps helps = helps_for(n_s, from);
     EXPECT_GT(helps.least, 0.0) << n_s;
     EXPECT_NEAR(helps.searched, helps.least, 1e-9) << n_s;
