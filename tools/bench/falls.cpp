@@ -12,11 +12,8 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "base/character_path.h"
 #include "blows.h"
 #include "judge/judge.h"
-#include "load/load.h"
-#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
@@ -34,11 +31,6 @@ std::optional<double> momentum(const std::string& blow) {
   char* end = nullptr;
   const double value = std::strtod(blow.c_str(), &end);
   return *end == '\0' ? std::optional(value) : std::nullopt;
-}
-
-Status set(BakeSettings& settings, const std::string& name, const std::string& value) {
-  const auto setting = find_setting(name);
-  return setting ? (*setting)->set(settings, value) : Status(setting.error());
 }
 
 void run(const BakeSettings& base, Blow& blow) {
@@ -132,17 +124,12 @@ int main(int argc, char** argv) {
   const auto argument = [&](int i, const char* otherwise) { return split(argc > i ? argv[i] : otherwise); };
   const auto names = argument(1, "mannequin");
   BakeSettings settings;
-  for (int i = 5; i < argc; ++i) {
-    const std::string option = argv[i];
-    const auto equals = option.find('=');
-    if (const Status status = set(settings, option.substr(0, equals), option.substr(equals + 1)); !status)
-      return fmt::print("{}\n", status.error().message()), 2;
-  }
+  if (const Status status = set_all(settings, argc, argv, 5); !status)
+    return fmt::print("{}\n", status.error().message()), 2;
   Diagnostics diagnostics;
   std::vector<Character> characters;
   for (const std::string& name : names) {
-    const auto path = character_path(name);
-    auto character = path ? load_character(*path, LoadOptions{}, diagnostics) : path.error();
+    auto character = load_named(name, diagnostics);
     if (!character) return fmt::print("{}\n", character.error().message()), 2;
     characters.push_back(std::move(*character));
   }

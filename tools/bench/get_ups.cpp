@@ -13,13 +13,10 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "base/character_path.h"
 #include "blows.h"
 #include "body/ground.h"
 #include "body/weight.h"
 #include "judge/judge.h"
-#include "load/load.h"
-#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
@@ -40,11 +37,6 @@ struct Row {
   long over_1deg = 0;
   std::string failed, frames, slides, fastest;
 };
-
-Status set(BakeSettings& settings, const std::string& name, const std::string& value) {
-  const auto setting = find_setting(name);
-  return setting ? (*setting)->set(settings, value) : Status(setting.error());
-}
 
 /// The nine falls: limp and living ones, from all around, other seeds.
 void set_fall(BakeSettings& settings, int character, int pose) {
@@ -227,12 +219,8 @@ int main(int argc, char** argv) {
   const auto names = split(argc > 1 ? argv[1] : "mannequin");
   const auto span = split(argc > 2 ? argv[2] : "0,8");
   BakeSettings base;
-  for (int i = 3; i < argc; ++i) {
-    const std::string option = argv[i];
-    const auto equals = option.find('=');
-    if (const Status status = set(base, option.substr(0, equals), option.substr(equals + 1)); !status)
-      return fmt::print("{}\n", status.error().message()), 2;
-  }
+  if (const Status status = set_all(base, argc, argv, 3); !status)
+    return fmt::print("{}\n", status.error().message()), 2;
   Diagnostics diagnostics;
   std::vector<Row> rows;
   std::vector<std::pair<const Character*, BakeSettings>> bakes;
@@ -240,8 +228,7 @@ int main(int argc, char** argv) {
   characters.reserve(names.size());
   for (std::size_t c = 0; c < names.size(); ++c) {
     const auto at = names[c].find('@');
-    const auto path = character_path(names[c].substr(0, at));
-    auto character = path ? load_character(*path, LoadOptions{}, diagnostics) : path.error();
+    auto character = load_named(names[c].substr(0, at), diagnostics);
     if (!character) return fmt::print("{}\n", character.error().message()), 2;
     characters.push_back(std::move(*character));
     for (int pose = std::stoi(span.front()); pose <= std::min(std::stoi(span.back()), kPoses - 1); ++pose) {

@@ -8,10 +8,7 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "base/character_path.h"
 #include "blows.h"
-#include "load/load.h"
-#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
@@ -100,16 +97,10 @@ int main(int argc, char** argv) {
   BakeSettings settings;
   settings.simulation.duration_s = 4.0;
   settings.behaviour = Behaviour::alert;
-  for (int i = 5; i < argc; ++i) {
-    const std::string option = argv[i];
-    const auto equals = option.find('=');
-    const auto setting = find_setting(option.substr(0, equals));
-    if (!setting || !(*setting)->set(settings, option.substr(equals + 1)))
-      return fmt::print("{}?\n", option), 2;
-  }
+  if (const Status status = set_all(settings, argc, argv, 5); !status)
+    return fmt::print("{}\n", status.error().message()), 2;
   Diagnostics diagnostics;
-  const auto path = character_path(name);
-  const auto character = load_character(*path, LoadOptions{}, diagnostics);
+  const auto character = load_named(name, diagnostics);
   if (!character) return fmt::print("{}\n", character.error().message()), 2;
   struct Job {
     std::string segment;
