@@ -31,6 +31,7 @@ constexpr double kAhead_s = 0.004;  // postures are compared over so long
 
 // Steps.
 constexpr double kFastest_s = 0.22;
+constexpr double kSwing_m_s = 2.8, kLongestSwing_s = 0.4;  // of a foot over its way
 
 constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point so far beyond the feet
 constexpr double kOutOfStride = 1.4;   // the same while a stride that has begun is not at its end
@@ -128,8 +129,9 @@ Standing::View Standing::view_of(const Senses& senses) const {
     if (!view.stands[i]) continue;
     ++standing;
     view.middle += view.sole[i];
-    yaw_x += std::cos(leg(side).yaw(senses));
-    yaw_y += std::sin(leg(side).yaw(senses));
+    const double foot_yaw = leg(side).yaw(senses) - points_[i];
+    yaw_x += std::cos(foot_yaw);
+    yaw_y += std::sin(foot_yaw);
     const auto corners = leg(side).sole_corners(senses, 0.0);
     const auto moved_in = leg(side).sole_corners(senses, m(kEdge));
     outer.insert(outer.end(), corners.begin(), corners.end());
@@ -187,6 +189,7 @@ bool Standing::in_air(const Senses& senses, const Leg& leg) const {
 /// The start of a body under way: a foot in the air goes on with its step.
 void Standing::take_over(const Senses& senses) {
   under_way_ = senses.pose;
+  for (const BodySide side : kSides) points_[ukemi::index(side)] = leg(side).yaw(senses);
   std::optional<BodySide> first;
   for (const BodySide side : kSides) {
     if (!in_air(senses, leg(side))) continue;
@@ -309,6 +312,7 @@ void Standing::lift(const Senses& senses, const View& view, BodySide side, bool 
   swing_.from = senses.pose[ukemi::index(leg(side).foot)].translation;
   swing_.from_foot = senses.pose[ukemi::index(leg(side).foot)].rotation;
   swing_.from_sole = view.sole[ukemi::index(side)];
+  points_[ukemi::index(side)] = 0.0;
   swing_.to = swing_.from_sole;
   swing_.span_s = closing ? s(0.30) : swing_span(view, side);
   phase_ = Phase::swing;
@@ -388,7 +392,10 @@ double Standing::cost_of(const View& view, BodySide swing) const {
 double Standing::swing_span(const View& view, BodySide swing) const {
   const Vec2 from_standing = view.icp - view.sole[ukemi::index(other(swing))];
   const double hurry = std::max(0.0, from_standing.norm() / physique_.size - 0.10 - 0.08);
-  return s(std::clamp(settings_.swing_s - 0.6 * hurry, kFastest_s, settings_.swing_s));
+  const double span = s(std::clamp(settings_.swing_s - 0.6 * hurry, kFastest_s, settings_.swing_s));
+  // No leg swings faster: a foot that comes from behind has a long way.
+  const double travel = (landing_place(view, swing, s(0.3)) - view.sole[ukemi::index(swing)]).norm();
+  return std::clamp(travel / m_s(kSwing_m_s), span, std::max(span, s(kLongestSwing_s)));
 }
 
 Vec2 Standing::landing_place(const View& view, BodySide swing, double time_left) const {
@@ -603,15 +610,16 @@ Vec3 Standing::swing_ankle(double time_s) const {
   const Quat foot = Quat(Eigen::AngleAxisd(swing_.to_yaw, Vec3::UnitY())) * leg_in_air.home_foot;
   const Vec3 target = at_height(swing_.to, 0.0) - foot * leg_in_air.sole_middle;
   const double along = min_jerk(phase / 0.85);
-  const double bump = phase < 0.55 ? min_jerk(phase / 0.55) : 1.0 - min_jerk((phase - 0.55) / 0.45);
   const double most = swing_.closing ? 0.05 : 0.09;
+  const double top = std::max(swing_.from.y(), leg_in_air.home_ankle_m + m(most));
+  const double risen = swing_.from.y() + (top - swing_.from.y()) * min_jerk(phase / 0.55);
   Vec3 at = swing_.from + along * (target - swing_.from);
   const double duration = 0.85 * swing_.span_s;
   const double u = std::clamp(phase / 0.85, 0.0, 1.0);
-  at += duration * u * (1.0 + u * u * (-6.0 + u * (8.0 - 3.0 * u))) * swing_.from_velocity;
-  at.y() +=
-      m(most) * bump * std::clamp((m(0.09) - swing_.from.y() + leg_in_air.home_ankle_m) / m(0.09), 0.0, 1.0) -
-      m_s(0.5) * std::max(0.0, time_s - swing_.lift_s - swing_.span_s);
+  const Vec3 carried = duration * u * (1.0 + u * u * (-6.0 + u * (8.0 - 3.0 * u))) * swing_.from_velocity;
+  at += carried;
+  at.y() = carried.y() + risen + (target.y() - risen) * min_jerk((phase - 0.55) / 0.45) -
+           m_s(0.5) * std::max(0.0, time_s - swing_.lift_s - swing_.span_s);
   if (!under_way_) return at;
   // The toes of a foot that swings through have not come level yet: they clear the ground too.
   const Quat turned = swing_foot(phase, foot);

@@ -145,6 +145,7 @@ class Standing {
   BodySide shift_to_ = BodySide::left;
   double shift_since_s_ = 0.0, ready_s_ = 0.0, calm_s_ = 0.0, hanging_s_ = 0.0;
   PerSide<double> landed_s_{-1e9, -1e9};
+  PerSide<double> points_{0.0, 0.0};    // yaw of a foot of the gait, as long as it stands, from home
   PerSide<Vec3> planted_;               // ankles where their feet came to stand
   PerSide<double> bearing_{1.0, 1.0};   // 1: the foot is on the ground, 0: it has been off it for a while
   Vec2 landing_offset_ = Vec2::Zero();  // of the reference, fading after a landing

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/quantile.h"
+#include "humanoid/soles.h"
 
 namespace ukemi {
 
@@ -15,15 +16,13 @@ constexpr double kFloorQuantile = 0.05;        // a calibration pose or a slippe
 }  // namespace
 
 double height_above_floor(const Character& character, const Humanoid& humanoid, const Pose& pose) {
-  const auto pelvis_height = [&](const Pose& p) {
-    return segments_of(character.skeleton, humanoid, p)[index(Segment::pelvis)].translation.y();
-  };
-  return pelvis_height(pose) - pelvis_height(stand_on_floor(character, humanoid, pose));
+  return Soles(character, humanoid).lowest(character.skeleton, pose);
 }
 
 double floor_of(const Character& character, const Humanoid& humanoid, const std::vector<Pose>& poses) {
+  const Soles soles(character, humanoid);
   std::vector<double> heights;
-  for (const Pose& pose : poses) heights.push_back(height_above_floor(character, humanoid, pose));
+  for (const Pose& pose : poses) heights.push_back(soles.lowest(character.skeleton, pose));
   const double rank = kFloorQuantile * static_cast<double>(heights.size() - 1);
   return ranked(std::move(heights), static_cast<std::size_t>(rank));
 }

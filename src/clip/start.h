@@ -36,11 +36,11 @@ Pose unhit_pose(const Skeleton& skeleton, const Humanoid& humanoid, const Start&
 /// pose.
 double velocity_jump(const Skeleton& skeleton, const Humanoid& humanoid, const Start& start);
 
-/// How far the lowest foot of a pose is above y = 0, metres.
+/// How far the lowest heel or ball of a foot is above y = 0, metres.
 double height_above_floor(const Character& character, const Humanoid& humanoid, const Pose& pose);
 
-/// Height of the floor under some poses of a clip, metres: of the lowest point of the feet, in all but the
-/// lowest twentieth of the poses.
+/// Height of the floor under some poses of a clip, metres: of the lowest heel or ball, in all but the lowest
+/// twentieth of the poses. Toes bend, also where a rig has none: they may dig in.
 double floor_of(const Character& character, const Humanoid& humanoid, const std::vector<Pose>& poses);
 
 /// The pose with the whole figure moved by `offset` (world, metres).

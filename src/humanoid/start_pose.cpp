@@ -1,13 +1,13 @@
 // Standing poses, built as segment rotations on the figure of the reference pose.
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <optional>
 
 #include "base/random.h"
 #include "humanoid/humanoid.h"
 #include "humanoid/landmarks.h"
 #include "humanoid/skin.h"
+#include "humanoid/soles.h"
 
 namespace ukemi {
 namespace {
@@ -210,23 +210,6 @@ BodyPose body_in(const Stance& stance, const BodyPose& from) {
   place_leg(figure, stance.leg_l, ankle_height, heading, true);
   place_leg(figure, stance.leg_r, ankle_height, heading, false);
   return figure.to;
-}
-
-constexpr double kFarSole = 0.4;  // of the height, from the ankle: farther than any shoe
-
-/// Of the skin around the foot bones, along a direction of the world (unit), file units.
-SkinExtent extent_of_feet(const Character& character, const Humanoid& humanoid, const Pose& pose,
-                          std::initializer_list<Segment> feet, const Vec3& direction) {
-  std::vector<char> in_foot(character.skeleton.nodes.size(), 0);
-  for (const Segment foot : feet)
-    if (humanoid.carrier_node(foot) >= 0) in_foot[humanoid.carrier_node(foot)] = 1;
-  for (const int i : character.skeleton.order) {
-    const int parent = character.skeleton.nodes[i].parent;
-    if (parent >= 0 && in_foot[parent]) in_foot[i] = 1;
-  }
-  return skin_extent(character, world_transforms(character.skeleton, pose),
-                     humanoid.world_from_file.rotation.conjugate() * direction,
-                     [&](int node) { return in_foot[node] != 0; });
 }
 
 /// How much shorter than a man's the heels are behind the ankles, metres. People stand with their weight amid

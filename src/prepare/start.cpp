@@ -24,6 +24,8 @@ constexpr double kFastest = 20.0;              // m/s, of a body 1.75 m tall: fa
 constexpr double kFastestTurn = 60.0;          // rad/s
 constexpr double kFloorRate = 30.0;            // samples per second of a clip
 constexpr int kMaxFloorSamples = 600;
+constexpr double kStride_s = 0.5;        // to either side of the start: both feet stand in it
+constexpr double kSameFloor = 0.025;     // of the height
 const double kRoundTurn = radians(1.5);  // between the first and the last pose of a cycle
 constexpr double kRoundShift = 0.005;    // of the body height
 constexpr double kShortestRound = 0.2;   // s
@@ -82,15 +84,29 @@ void find_velocities(const Skeleton& skeleton, const Humanoid& humanoid, const A
                   time_s - animation.start_s));
 }
 
-std::vector<Pose> floor_samples(const Skeleton& skeleton, const Animation& animation) {
-  const double wanted = animation.duration_s() * kFloorRate;
+/// Poses of the clip from one time to another, s after its start.
+std::vector<Pose> floor_samples(const Skeleton& skeleton, const Animation& animation, double from_s,
+                                double to_s) {
+  const double wanted = (to_s - from_s) * kFloorRate;
   const int last = static_cast<int>(std::min(wanted, static_cast<double>(kMaxFloorSamples)));
   std::vector<Pose> poses;
   for (int i = 0; i <= last; ++i) {
-    const double time_s = animation.start_s + (last > 0 ? animation.duration_s() * i / last : 0.0);
-    poses.push_back(sample(skeleton, animation, time_s));
+    const double share = last > 0 ? static_cast<double>(i) / last : 0.0;
+    poses.push_back(sample(skeleton, animation, animation.start_s + from_s + share * (to_s - from_s)));
   }
   return poses;
+}
+
+/// Height of the floor that the start stands on. Captured floors slope and drift: that of the strides about
+/// the start, unless it is another floor than the clip's (a leap, a step).
+double floor_at(const Character& character, const Humanoid& humanoid, const Animation& motion, double at_s) {
+  const auto floor_between = [&](double from_s, double to_s) {
+    return floor_of(character, humanoid, floor_samples(character.skeleton, motion, from_s, to_s));
+  };
+  const double whole = floor_between(0.0, motion.duration_s());
+  const double near =
+      floor_between(std::max(0.0, at_s - kStride_s), std::min(motion.duration_s(), at_s + kStride_s));
+  return std::abs(near - whole) < kSameFloor * humanoid.height_m ? near : whole;
 }
 
 /// What a body starts from: its clip, or nothing for a still pose.
@@ -158,8 +174,7 @@ Result<Start> start_from_motion(const Character& character, const Humanoid& huma
   start.from_clip = true;
   start.at_s = at_s;
   start.pose = sample(character.skeleton, motion, motion.start_s + at_s);
-  const std::vector<Pose> poses = floor_samples(character.skeleton, motion);
-  const double floor_m = floor_of(character, humanoid, poses);
+  const double floor_m = floor_at(character, humanoid, motion, at_s);
   start.floor_m = std::min(floor_m, height_above_floor(character, humanoid, start.pose));
   find_velocities(character.skeleton, humanoid, motion, motion.start_s + at_s, start.state, diagnostics);
   start.round = round_of(character.skeleton, humanoid, motion);

@@ -1,0 +1,32 @@
+// What feet stand on.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "humanoid/humanoid.h"
+#include "humanoid/skin.h"
+
+namespace ukemi {
+
+/// Of the skin around the bones of some feet, along a direction of the world (unit), file units.
+SkinExtent extent_of_feet(const Character& character, const Humanoid& humanoid, const Pose& pose,
+                          const std::vector<Segment>& feet, const Vec3& direction);
+
+/// Farther from the ankle, in heights, than any shoe.
+inline constexpr double kFarSole = 0.4;
+
+/// Heels and balls of the feet. Toes bend, also where a rig has none: they do not count.
+class Soles {
+ public:
+  Soles(const Character& character, const Humanoid& humanoid);
+
+  /// The lowest of them in the world, metres.
+  double lowest(const Skeleton& skeleton, const Pose& pose) const;
+
+ private:
+  const Humanoid& humanoid_;
+  std::array<std::vector<Vec3>, 2> points_;  // of the left and the right foot, in its frame
+};
+
+}  // namespace ukemi
