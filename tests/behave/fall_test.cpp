@@ -195,6 +195,16 @@ TEST(Crouch, of_a_dive_has_straight_hips) {
   EXPECT_GT(log_rotation(goals[index(Joint::hip_l)]).z(), radians(20.0));
 }
 
+TEST(Falling, brakes_with_the_legs_to_the_side_more_than_to_the_front) {
+  const Faller faller;
+  const auto stiffness = [&](double azimuth) {
+    Falling falling({}, faller.man.body, faller.man.range, faller.strength);
+    const Goals goals = goals_after(falling, tipped(faller, 0.5, azimuth, 1.5));
+    return goals.joints[index(Joint::knee_r)][0].stiffness_n_m_rad;
+  };
+  EXPECT_GT(stiffness(90.0), 2.0 * stiffness(0.0));
+}
+
 TEST(Falling, over_the_knees_stretches_the_hips_and_lets_the_knees_go) {
   const Faller faller;
   Falling falling({}, faller.man.body, faller.man.range, faller.strength);
