@@ -260,6 +260,7 @@ class Planner {
   double heading_ = 0.0;
   bool a_is_right_ = true;
   int mends_ = kMends;
+  double tempo_ = 1.0;
   bool placed_ = false;
   double seat_height_ = 0.0, trunk_height_ = 0.0;  // of the lying body
   std::vector<PlannedKey> keys_;
@@ -800,13 +801,13 @@ std::vector<FigurePose> Planner::balanced_motion(std::vector<Vec2>& balance) con
   return figures;
 }
 
-/// A motion is sought in frames about 1/20 s apart, and put right in those that are wanted.
+/// A motion is sought in about twenty frames a second, and put right in those that are wanted.
 void Planner::fill_frames(GetUp& result) {
   constexpr double kSunk_m = 0.003;
-  constexpr double kSought_hz = 20.0;
+  constexpr double kSought_hz = 18.0;  // at the tempo of the tables
   const double fps = settings_.fps;
   const int last = static_cast<int>(std::lround(end_s() * fps));
-  const int count = std::min(last, static_cast<int>(std::lround(last / fps * kSought_hz)));
+  const int count = std::min(last, static_cast<int>(std::lround(last / fps * kSought_hz / tempo_)));
   settings_.fps = count / (last / fps);
   std::vector<Vec2> coarse_balance;
   const std::vector<FigurePose> coarse = balanced_motion(coarse_balance);
@@ -898,6 +899,7 @@ GetUp Planner::plan(const Route& route, double heading, const WayRound& side, do
   heading_ = heading;
   a_is_right_ = side.a_is_right;
   mends_ = side.mends;
+  tempo_ = tempo;
   const Quat turn = exp_rotation((heading - yaw_of(standing_[0].rotation * kX)) * kY);
   for (Rigid& segment : standing_) segment = Rigid{turn, Vec3::Zero()} * segment;
   start_lying(route, side.knees_free);
@@ -1119,12 +1121,15 @@ Result<GetUp> plan_get_up(const ArticulatedBody& body, const RangeOfMotion& rang
   }
   const WholeBody whole(body, range, skin);
   std::optional<GetUp> best;
+  constexpr double kHolds = 1.1;
   Faults least;
   for (const WayRound& way : ways_round(choice.a_is_right, knees_lie(whole, lying))) {
     Planner planner(whole, before, lying, standing, settings);
     GetUp get_up = planner.plan(choice.route, yaw_of(choice.ahead), way, tempo(settings.style));
     const Faults faults = faults_of(whole, get_up);
-    if (!best || faults.worst() < least.worst()) least = faults, best = std::move(get_up);
+    // Contacts that hold are not given up for better balance.
+    const bool holds = faults.course < std::max(kHolds, least.course);
+    if (!best || (holds && faults.worst() < least.worst())) least = faults, best = std::move(get_up);
     if (least.worst() < 1.0) break;
   }
   return *best;
