@@ -33,10 +33,12 @@ constexpr double kStillDamping = 20.0;                  // times that of lying
 constexpr double kOnFront = 0.5;   // side_down.x(): who lands so comes to lie on the belly
 constexpr double kYielding = 0.1;  // share of its effort that an arm keeps where nothing sinks on to it
 constexpr double kHipsThrough = 1.2,
-                 kLooseKnees = 0.05;  // efforts while a kneeling body goes on to the belly
-constexpr double kArmAtRest = 0.1;    // effort on the back: too weak to hold a hand up in the air
+                 kLooseKnees = 0.05;     // efforts while a kneeling body goes on to the belly
+constexpr double kArmsLieDown_s = 0.45;  // on the belly: nobody lies still at once
+constexpr double kArmAtRest = 0.1;       // effort on the back: too weak to hold a hand up in the air
 constexpr double kFlatAfter_s = 0.03, kFlatAtLast_s = 0.4;  // trunk down, or landed: then the legs lie down
-constexpr double kMoving = 1.2;  // effort besides, amid the way to where a part will lie
+constexpr double kLegsAside = 1.0;  // effort besides of legs that brake a fall to the side
+constexpr double kMoving = 1.2;     // effort besides, amid the way to where a part will lie
 
 bool is_hip(Joint j) { return j == Joint::hip_l || j == Joint::hip_r; }
 bool is_arm(Joint j) { return j >= Joint::clavicle_l && j <= Joint::wrist_r; }
@@ -234,8 +236,8 @@ void Falling::settle_parts(const Senses& senses) {
   for (const BodySide side : kSides) {
     const ArmLanding& arm = landing_.arm(side);
     const bool braked = !prone && arm.braked_s && time_s - *arm.braked_s > 0.12 * body_.tau;
-    if (braked || (lies && since_s > 0.2) || since_s > (prone ? 0.4 : 0.7))
-      begin(side == BodySide::left ? Part::arm_l : Part::arm_r, 0.7);
+    if (braked || (lies && since_s > 0.1) || since_s > (prone ? 0.3 : 0.7))
+      begin(side == BodySide::left ? Part::arm_l : Part::arm_r, prone ? kArmsLieDown_s : 0.7);
   }
 }
 
@@ -327,7 +329,7 @@ Falling::Effort Falling::falling_effort(Joint joint, double time_s) const {
       effort = {1.2, 0.12};
       break;
     case Part::legs:
-      effort = {0.6 + 0.6 * way().backward, 0.15 + 0.15 * way().backward};
+      effort = {0.6 + 0.6 * way().backward + kLegsAside * way().sideways, 0.15 + 0.15 * way().backward};
       break;
     case Part::arm_l:
     case Part::arm_r:

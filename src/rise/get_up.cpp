@@ -159,6 +159,10 @@ void add_corners(const WholeBody& whole, int contact, const Rigid& at, const Vec
   }
 }
 
+bool is_low(const WholeBody& whole, const Vec3& place, double times = 1.0) {
+  return place.y() < times * 0.015 * whole.body().height_m;
+}
+
 constexpr Joint kArms[] = {Joint::clavicle_l, Joint::shoulder_l, Joint::elbow_l, Joint::wrist_l,
                            Joint::clavicle_r, Joint::shoulder_r, Joint::elbow_r, Joint::wrist_r};
 
@@ -171,10 +175,13 @@ struct PlannedKey {
   bool keeps_body = false;
 };
 
+constexpr int kMends = 2, kMoreMends = 4;
+
 /// Which way round a route is taken.
 struct WayRound {
   bool a_is_right = true;
   bool knees_free = false;  // knees that lie on the floor may be moved
+  int mends = kMends;       // times that the way of the weight is put right
 };
 
 class Planner {
@@ -219,7 +226,8 @@ class Planner {
   std::vector<FigurePose> smoothed(const std::vector<FigurePose>& figures, double sigma_s) const;
   std::vector<FigurePose> guided(const std::vector<FigurePose>& reference,
                                  const std::vector<Vec2>& balance) const;
-  void fill_frames(GetUp& result) const;
+  std::vector<FigurePose> balanced_motion(std::vector<Vec2>& balance) const;
+  void fill_frames(GetUp& result);
   void mend_balance(const std::vector<FigurePose>& figures, std::vector<Vec2>& balance) const;
   std::vector<FigurePose> balanced(const std::vector<FigurePose>& guide,
                                    const std::vector<Vec2>& balance) const;
@@ -251,6 +259,8 @@ class Planner {
   OuterSkin trunk_;  // and thighs: what bears while the body lies
   double heading_ = 0.0;
   bool a_is_right_ = true;
+  int mends_ = kMends;
+  double tempo_ = 1.0;
   bool placed_ = false;
   double seat_height_ = 0.0, trunk_height_ = 0.0;  // of the lying body
   std::vector<PlannedKey> keys_;
@@ -639,7 +649,8 @@ void Planner::add_swing(int from, int to, int i, double time_s, PoseGoals& goals
 void Planner::add_on_the_way(int contact, int i, double time_s, const BodyPose& alike,
                              PoseGoals& goals) const {
   constexpr double kLongestEase_s = 0.42;
-  constexpr double kArc = 0.02;  // of the height, by which a part lifts on its way
+  constexpr double kArc = 0.02,
+                   kSteep = 0.25;  // of the height, of what is left of the way: so far a part lifts
   const double span = keys_[i + 1].time_s - keys_[i].time_s;
   const double ease = std::min(kLongestEase_s, 0.75 * span);
   const auto partly = [&](const Rigid& pin, double progress) {
@@ -647,8 +658,11 @@ void Planner::add_on_the_way(int contact, int i, double time_s, const BodyPose& 
     const double share = smooth_step(progress);
     const Rigid& own = alike[index(segment_of(contact))];
     Rigid target{pin.rotation, Vec3::Zero()};
-    Vec3 place = (1.0 - share) * (own * points_[contact]) + share * (pin * points_[contact]);
-    if (kind_of(contact) != seat) place.y() += kArc * whole_.body().height_m * std::sin(kPi * share);
+    const Vec3 is = own * points_[contact], will_be = pin * points_[contact];
+    Vec3 place = (1.0 - share) * is + share * will_be;
+    if (kind_of(contact) != seat)
+      place.y() += std::min(kArc * whole_.body().height_m, kSteep * level(will_be - is).norm()) *
+                   std::sin(kPi * share);
     target.translation = place - target.rotation * points_[contact];
     if (kind_of(contact) != seat) raise(segment_of(contact), target);
     add_pin(contact, target, growing(progress), growing(progress), goals);
@@ -775,17 +789,37 @@ std::vector<FigurePose> Planner::balanced(const std::vector<FigurePose>& guide,
   return smoothed(figures, 0.055);
 }
 
-void Planner::fill_frames(GetUp& result) const {
-  constexpr int kRounds = 2;
-  constexpr double kSunk_m = 0.003;
+/// The motion from key to key, balanced.
+std::vector<FigurePose> Planner::balanced_motion(std::vector<Vec2>& balance) const {
   const std::vector<FigurePose> reference = smoothed(references(), 0.11);
-  std::vector<Vec2> balance = balance_path();
+  balance = balance_path();
   std::vector<FigurePose> figures = balanced(guided(reference, balance), balance);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < mends_; ++round) {
     mend_balance(figures, balance);
     figures = balanced(figures, balance);
   }
-  const int last = static_cast<int>(figures.size()) - 1;
+  return figures;
+}
+
+/// A motion is sought in about twenty frames a second, and put right in those that are wanted.
+void Planner::fill_frames(GetUp& result) {
+  constexpr double kSunk_m = 0.003;
+  constexpr double kSought_hz = 18.0;  // at the tempo of the tables
+  const double fps = settings_.fps;
+  const int last = static_cast<int>(std::lround(end_s() * fps));
+  const int count = std::min(last, static_cast<int>(std::lround(last / fps * kSought_hz / tempo_)));
+  settings_.fps = count / (last / fps);
+  std::vector<Vec2> coarse_balance;
+  const std::vector<FigurePose> coarse = balanced_motion(coarse_balance);
+  settings_.fps = fps;
+  std::vector<FigurePose> figures;
+  std::vector<Vec2> balance;
+  for (int f = 0; f <= last; ++f) {
+    const double at = static_cast<double>(f) * count / last;
+    const int i = std::min(static_cast<int>(at), count - 1);
+    figures.push_back(between(whole_, coarse[i], coarse[i + 1], at - i));
+    balance.push_back((1.0 - at + i) * coarse_balance[i] + (at - i) * coarse_balance[i + 1]);
+  }
   result.frames.push_back(lying_);
   for (int f = 1; f < last; ++f) {
     PoseGoals goals = balanced_goals(f, figures[f], balance[f], 40.0);
@@ -820,14 +854,13 @@ void Planner::start_lying(const Route& route, bool knees_free) {
   start.figure = figure_pose(lying_);
   const bool kneels = !(route.keys.front().touches & (kSeat | kBody));
   start.lies = !kneels;
-  const double low_m = 0.015 * whole_.body().height_m;
   for (const bool left : {true, false}) {
     const int c = contact_index(knee, left);
     start.pin[c] = lying_[index(segment_of(c))];
-    start.on[c] = !knees_free && (start.pin[c] * points_[c]).y() < low_m;
+    start.on[c] = !knees_free && is_low(whole_, start.pin[c] * points_[c]);
     const int t = contact_index(toes, left);
     start.pin[t] = lying_[index(segment_of(t))];
-    start.on[t] = kneels && (start.pin[t] * points_[t]).y() < 2.0 * low_m;
+    start.on[t] = kneels && is_low(whole_, start.pin[t] * points_[t], 2.0);
   }
   const int on_seat = contact_index(seat, true);
   start.pin[on_seat] = lying_[0];
@@ -865,6 +898,8 @@ std::vector<PlantedPart> Planner::planted_parts() const {
 GetUp Planner::plan(const Route& route, double heading, const WayRound& side, double tempo) {
   heading_ = heading;
   a_is_right_ = side.a_is_right;
+  mends_ = side.mends;
+  tempo_ = tempo;
   const Quat turn = exp_rotation((heading - yaw_of(standing_[0].rotation * kX)) * kY);
   for (Rigid& segment : standing_) segment = Rigid{turn, Vec3::Zero()} * segment;
   start_lying(route, side.knees_free);
@@ -981,24 +1016,29 @@ void vary(Random& random, KeyPose& key) {
   for (KeyLeg* leg : {&key.leg_a, &key.leg_b}) leg->abduction += random.uniform(-2.0, 3.0);
 }
 
-/// What is wrong with a get-up at its worst, in shares of what goes: parts that slide or sink, leaps, weight
-/// without support.
-double faults_of(const WholeBody& whole, const GetUp& get_up) {
-  constexpr double kSlide_m = 0.008, kSunk_m = 0.03, kSpeed_m_s = 6.0, kOffBalance_m = 0.03;
-  double worst = 0.0;
+/// What is wrong with a get-up at its worst, in shares of what goes.
+struct Faults {
+  double balance = 0.0;  // weight without support
+  double course = 0.0;   // parts that slide, sink or leap
+  double worst() const { return std::max(balance, course); }
+};
+
+Faults faults_of(const WholeBody& whole, const GetUp& get_up) {
+  constexpr double kSlide_m = 0.009, kSunk_m = 0.03, kSpeed_m_s = 6.5, kOffBalance_m = 0.03;
+  Faults worst;
   const std::vector<WeightOffset> weights =
       weight_offsets(whole.body(), whole.skin(), get_up.frames, get_up.fps);
   for (std::size_t f = static_cast<std::size_t>(0.3 * get_up.fps); f < weights.size(); ++f)
-    worst = std::max(worst, weights[f].least_m() / kOffBalance_m);
+    worst.balance = std::max(worst.balance, weights[f].least_m() / kOffBalance_m);
+  const auto find = [&worst](double share) { worst.course = std::max(worst.course, share); };
   for (std::size_t f = 1; f < get_up.frames.size(); ++f) {
     const BodyPose& frame = get_up.frames[f];
-    worst = std::max(worst, -whole.lowest(frame) / kSunk_m);
+    find(-whole.lowest(frame) / kSunk_m);
     for (int s = 0; s < kSegmentCount; ++s)
-      worst = std::max(worst, get_up.fps / kSpeed_m_s *
-                                  (frame[s].translation - get_up.frames[f - 1][s].translation).norm());
+      find(get_up.fps / kSpeed_m_s * (frame[s].translation - get_up.frames[f - 1][s].translation).norm());
     for (const PlantedPart& part : get_up.planted)
       if (static_cast<int>(f) >= part.first && static_cast<int>(f) <= part.last)
-        worst = std::max(worst, (frame[index(part.segment)] * part.point - part.place).norm() / kSlide_m);
+        find((frame[index(part.segment)] * part.point - part.place).norm() / kSlide_m);
   }
   return worst;
 }
@@ -1009,6 +1049,13 @@ struct Way {
   Vec3 ahead;  // where he will face
   bool a_is_right;
 };
+
+bool knees_lie(const WholeBody& whole, const BodyPose& lying) {
+  const ContactPoints points = contact_points(whole);
+  for (const int c : {contact_index(knee, true), contact_index(knee, false)})
+    if (is_low(whole, lying[index(segment_of(c))] * points[c])) return true;
+  return false;
+}
 
 bool knees_are_low(const ArticulatedBody& body, const BodyPose& lying) {
   return std::min(lying[index(Segment::shank_l)].translation.y(),
@@ -1048,6 +1095,16 @@ Way choose(const ArticulatedBody& body, const BodyPose& lying, const GetUpSettin
   return {sits, -level(up), open};
 }
 
+/// The ways round that are tried until one is sound.
+std::vector<WayRound> ways_round(bool a_is_right, bool knees_lie) {
+  std::vector<WayRound> ways;
+  for (const int mends : {kMends, kMoreMends})
+    for (const bool knees_free : {false, true})
+      for (const bool right : {a_is_right, !a_is_right})
+        if (knees_lie || !knees_free) ways.push_back({right, knees_free, mends});
+  return ways;
+}
+
 }  // namespace
 
 Result<GetUp> plan_get_up(const ArticulatedBody& body, const RangeOfMotion& range, const BodyPose& before,
@@ -1064,16 +1121,17 @@ Result<GetUp> plan_get_up(const ArticulatedBody& body, const RangeOfMotion& rang
   }
   const WholeBody whole(body, range, skin);
   std::optional<GetUp> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const bool knees_free : {false, true})
-    for (const bool a_is_right : {choice.a_is_right, !choice.a_is_right}) {
-      Planner planner(whole, before, lying, standing, settings);
-      GetUp get_up =
-          planner.plan(choice.route, yaw_of(choice.ahead), {a_is_right, knees_free}, tempo(settings.style));
-      const double faults = faults_of(whole, get_up);
-      if (faults < least) least = faults, best = std::move(get_up);
-      if (least < 1.0) return *best;
-    }
+  constexpr double kHolds = 1.1;
+  Faults least;
+  for (const WayRound& way : ways_round(choice.a_is_right, knees_lie(whole, lying))) {
+    Planner planner(whole, before, lying, standing, settings);
+    GetUp get_up = planner.plan(choice.route, yaw_of(choice.ahead), way, tempo(settings.style));
+    const Faults faults = faults_of(whole, get_up);
+    // Contacts that hold are not given up for better balance.
+    const bool holds = faults.course < std::max(kHolds, least.course);
+    if (!best || (holds && faults.worst() < least.worst())) least = faults, best = std::move(get_up);
+    if (least.worst() < 1.0) break;
+  }
   return *best;
 }
 

@@ -19,26 +19,36 @@ constexpr double kLongestStep = 0.5;    // radians or metres, of one iteration
 
 using Normal = Eigen::Matrix<double, kVariables, kVariables>;
 using Variables = Eigen::Matrix<double, kVariables, 1>;
-using Row = Eigen::Matrix<double, 1, kVariables>;
+
+/// How one number grows with the variables, without those that it does not depend on. Columns ascend.
+struct Row {
+  int count = 0;
+  std::array<int, kVariables> columns;
+  std::array<double, kVariables> values;
+
+  void add(int column, double value) {
+    if (value != 0.0) columns[count] = column, values[count++] = value;
+  }
+};
 
 }  // namespace
 
 /// PoseGoals at one pose: what is missing, squared and weighted, and the normal equations of the step that
 /// mends it.
 struct Equations {
-  explicit Equations(bool with_step_) : with_step(with_step_) {}
-
-  bool with_step;  // else only the cost
   double cost = 0.0;
-  Normal a = Normal::Zero();
+  Normal a = Normal::Zero();  // its lower triangle
   Variables b = Variables::Zero();
 
   void add(const Row& row, double residual, double weight) {
     const double w = weight * weight;
     cost += w * residual * residual;
-    if (!with_step) return;
-    a.selfadjointView<Eigen::Lower>().rankUpdate(row.transpose(), w);
-    b += w * residual * row.transpose();
+    for (int k = 0; k < row.count; ++k) {
+      const double value = w * row.values[k];
+      double* const below = a.data() + kVariables * row.columns[k];
+      for (int i = k; i < row.count; ++i) below[row.columns[i]] += value * row.values[i];
+      b[row.columns[k]] += residual * value;
+    }
   }
   /// Three variables wanted at `want` directly.
   void hold(int first, const Vec3& want, const Vec3& weight) {
@@ -55,34 +65,70 @@ namespace {
 
 int column(Joint joint) { return 6 + 3 * index(joint); }
 
-/// Rows of d(point)/d(variables), for the three axes, of a point that moves with a segment (world place).
-std::array<Row, 3> point_rows(const ArticulatedBody& body, const BodyPose& segments, Segment segment,
-                              const Vec3& place) {
-  std::array<Row, 3> rows{Row::Zero(), Row::Zero(), Row::Zero()};
-  const auto turn_about = [&](int first, const Vec3& centre) {
-    const Vec3 r = place - centre;
-    const Vec3 columns[3] = {Vec3::UnitX().cross(r), Vec3::UnitY().cross(r), Vec3::UnitZ().cross(r)};
-    for (int axis = 0; axis < 3; ++axis)
-      for (int k = 0; k < 3; ++k) rows[axis][first + k] = columns[k][axis];
-  };
-  for (int axis = 0; axis < 3; ++axis) rows[axis][axis] = 1.0;
-  turn_about(3, segments[0].translation);
-  for (Segment s = segment; s != Segment::pelvis; s = parent_of(s)) {
-    const Joint joint = joint_above(s);
-    if (!body.joints[index(joint)].fused) turn_about(column(joint), segments[index(s)].translation);
+/// Joints between the pelvis and a segment that move, from the pelvis on.
+struct Chain {
+  int count = 0;
+  std::array<Segment, kJointCount> below;  // of each joint
+
+  Chain(const ArticulatedBody& body, Segment segment) {
+    for (Segment s = segment; s != Segment::pelvis; s = parent_of(s))
+      if (!body.joints[index(joint_above(s))].fused) below[count++] = s;
+    std::reverse(below.begin(), below.begin() + count);
   }
-  return rows;
+};
+
+/// d(place)/d(turn about the centre) of one axis of the place.
+void add_turning(int axis, int first, const Vec3& r, Row& row) {
+  const int next = (axis + 1) % 3, last = (axis + 2) % 3;
+  for (int k = 0; k < 3; ++k)
+    if (k != axis) row.add(first + k, k == next ? r[last] : -r[next]);
+}
+
+/// Row of d(point)/d(variables), for one axis, of a point that moves with a segment (world place).
+Row point_row(const Chain& chain, const BodyPose& segments, int axis, const Vec3& place) {
+  Row row;
+  row.add(axis, 1.0);
+  add_turning(axis, 3, place - segments[0].translation, row);
+  for (int i = 0; i < chain.count; ++i)
+    add_turning(axis, column(joint_above(chain.below[i])),
+                place - segments[index(chain.below[i])].translation, row);
+  return row;
 }
 
 void add_turn(const ArticulatedBody& body, Segment segment, const Vec3& want, double weight,
               Equations& equations) {
+  const Chain chain(body, segment);
   for (int axis = 0; axis < 3; ++axis) {
-    Row row = Row::Zero();
-    row[3 + axis] = 1.0;
-    for (Segment s = segment; s != Segment::pelvis; s = parent_of(s))
-      if (!body.joints[index(joint_above(s))].fused) row[column(joint_above(s)) + axis] = 1.0;
+    Row row;
+    row.add(3 + axis, 1.0);
+    for (int i = 0; i < chain.count; ++i) row.add(column(joint_above(chain.below[i])) + axis, 1.0);
     equations.add(row, want[axis], weight);
   }
+}
+
+/// Row of d(centre of mass)/d(variables) for one axis. A joint turns all that hangs on it.
+Row weight_row(const ArticulatedBody& body, const BodyPose& segments, int axis) {
+  PerSegment<double> mass{};
+  PerSegment<Vec3> moment;  // mass times place
+  for (int s = kSegmentCount - 1; s >= 0; --s) {
+    mass[s] += body.segments[s].mass_kg;
+    moment[s] = body.segments[s].mass_kg * (segments[s] * body.segments[s].centre_of_mass);
+  }
+  for (int s = kSegmentCount - 1; s > 0; --s) {
+    const int parent = index(parent_of(segment_at(s)));
+    mass[parent] += mass[s];
+    moment[parent] += moment[s];
+  }
+  Row row;
+  row.add(axis, 1.0);
+  add_turning(axis, 3, (moment[0] - mass[0] * segments[0].translation) / body.mass_kg, row);
+  for (int j = 0; j < kJointCount; ++j) {
+    const int s = index(child_of(joint_at(j)));
+    if (!body.joints[j].fused)
+      add_turning(axis, column(joint_at(j)), (moment[s] - mass[s] * segments[s].translation) / body.mass_kg,
+                  row);
+  }
+  return row;
 }
 
 JointRange shrunk_twist(const JointRange& range, double margin) {
@@ -200,15 +246,10 @@ void WholeBody::add_balance(const PoseGoals& goals, const BodyPose& segments, Eq
   for (const std::vector<Vec2>& support : goals.supports)
     if (const Vec2 way = way_into(support, at); way.norm() > 1e-6) ways.push_back(way);
   if (ways.empty() && !goals.balance) return;
-  std::array<Row, 3> mean{Row::Zero(), Row::Zero(), Row::Zero()};
-  for (int s = 0; s < kSegmentCount && equations.with_step; ++s) {
-    const auto rows =
-        point_rows(body_, segments, segment_at(s), segments[s] * body_.segments[s].centre_of_mass);
-    for (int axis : {0, 2}) mean[axis] += body_.segments[s].mass_kg / body_.mass_kg * rows[axis];
-  }
+  const Row along_x = weight_row(body_, segments, 0), along_z = weight_row(body_, segments, 2);
   const auto add = [&](const Vec2& want, double weight) {
-    equations.add(mean[0], want.x(), weight);
-    equations.add(mean[2], want.y(), weight);
+    equations.add(along_x, want.x(), weight);
+    equations.add(along_z, want.y(), weight);
   };
   for (const Vec2& way : ways) add(way, goals.support_weight);
   if (goals.balance) add(*goals.balance - at, goals.balance_weight);
@@ -234,11 +275,11 @@ void WholeBody::add_likeness(const PoseGoals& goals, const FigurePose& figure, c
 
 void WholeBody::add_point(const PointGoal& goal, const BodyPose& segments, Equations& equations) const {
   const Vec3 place = segments[index(goal.segment)] * goal.point;
-  std::array<Row, 3> rows;
-  if (equations.with_step) rows = point_rows(body_, segments, goal.segment, place);
+  const Chain chain(body_, goal.segment);
   for (int axis = 0; axis < 3; ++axis)
     if (goal.weight[axis] > 0.0)
-      equations.add(rows[axis], goal.target[axis] - place[axis], goal.weight[axis]);
+      equations.add(point_row(chain, segments, axis, place), goal.target[axis] - place[axis],
+                    goal.weight[axis]);
 }
 
 void WholeBody::add_floor(const PoseGoals& goals, const BodyPose& segments, Equations& equations) const {
@@ -284,7 +325,7 @@ void WholeBody::add_goals(const PoseGoals& goals, const FigurePose& figure, Equa
 FigurePose WholeBody::stepped(const FigurePose& figure, const Equations& equations, double damping) const {
   Normal a = equations.a;
   a.diagonal().array() += damping;
-  Variables change = a.selfadjointView<Eigen::Lower>().ldlt().solve(equations.b);
+  Variables change = Eigen::LLT<Eigen::Ref<Normal>>(a).solve(equations.b);
   const double longest = change.cwiseAbs().maxCoeff();
   if (longest > kLongestStep) change *= kLongestStep / longest;
   const BodyPose segments = segments_of(body_, figure);
@@ -302,21 +343,23 @@ FigurePose WholeBody::stepped(const FigurePose& figure, const Equations& equatio
 
 FigurePose WholeBody::reach(const PoseGoals& goals, FigurePose figure, int steps) const {
   double damping = kDamping;
-  Equations at(true);
-  add_goals(goals, figure, at);
+  Equations both[2];
+  int now = 0;
+  add_goals(goals, figure, both[now]);
   for (int step = 0; step < steps; ++step) {
-    const FigurePose next = stepped(figure, at, damping);
-    Equations there(true);
+    const FigurePose next = stepped(figure, both[now], damping);
+    Equations& there = both[1 - now];
+    there = Equations();
     add_goals(goals, next, there);
-    const double gain = at.cost - there.cost;
+    const double gain = both[now].cost - there.cost;
     if (gain < 0.0) {
       damping *= 10.0;
       continue;
     }
     figure = next;
-    at = there;
+    now = 1 - now;
     damping = std::max(kDamping, 0.2 * damping);
-    if (gain < kSmallestGain * at.cost) break;
+    if (gain < kSmallestGain * there.cost) break;
   }
   return figure;
 }

@@ -195,6 +195,16 @@ TEST(Crouch, of_a_dive_has_straight_hips) {
   EXPECT_GT(log_rotation(goals[index(Joint::hip_l)]).z(), radians(20.0));
 }
 
+TEST(Falling, brakes_with_the_legs_to_the_side_more_than_to_the_front) {
+  const Faller faller;
+  const auto stiffness = [&](double azimuth) {
+    Falling falling({}, faller.man.body, faller.man.range, faller.strength);
+    const Goals goals = goals_after(falling, tipped(faller, 0.5, azimuth, 1.5));
+    return goals.joints[index(Joint::knee_r)][0].stiffness_n_m_rad;
+  };
+  EXPECT_GT(stiffness(90.0), 2.0 * stiffness(0.0));
+}
+
 TEST(Falling, over_the_knees_stretches_the_hips_and_lets_the_knees_go) {
   const Faller faller;
   Falling falling({}, faller.man.body, faller.man.range, faller.strength);
@@ -219,6 +229,25 @@ TEST(Falling, over_the_knees_stretches_the_hips_and_lets_the_knees_go) {
   EXPECT_GT(hip(before), radians(20.0));
   EXPECT_LT(hip(kneeling), 0.0);
   EXPECT_LT(knee(kneeling), 0.2 * knee(before));
+}
+
+TEST(Falling, lays_its_arms_down_within_six_tenths_of_a_second_on_the_belly) {
+  const Faller faller;
+  Falling falling({}, faller.man.body, faller.man.range, faller.strength);
+  Senses senses = tipped(faller, 0.7, 0.0, 1.5);
+  falling.start(senses);
+  falling.begin(senses, at_once(0.0));
+  const auto shoulder_at = [&](double until_s) {
+    for (; senses.time_s < until_s; senses.time_s += 0.01) falling.observe(senses, 0.01);
+    Goals goals;
+    falling.drive(senses.time_s, goals);
+    return goals.joints[index(Joint::shoulder_l)][0].parent_from_child;
+  };
+  shoulder_at(0.4);
+  senses.contacts.push_back(test::touches_floor(senses, Segment::chest));
+  const Quat landing = shoulder_at(0.42), soon = shoulder_at(1.0), at_last = shoulder_at(2.0);
+  EXPECT_GT(angle_between(landing, at_last), radians(20.0));
+  EXPECT_LT(angle_between(soon, at_last), radians(2.0));
 }
 
 TEST(ArmLanding, brakes_what_sinks_and_yields_to_what_hardly_does) {

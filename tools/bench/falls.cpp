@@ -1,7 +1,7 @@
-// How falls look to the judge, over characters, blows and directions: each fall's clauses that fail, then the
-// share of falls that pass each criterion, and the means of what belongs to a set.
-// ukemi_falls CHARACTER,... SEGMENT,... BLOW,... AZIMUTH,... [SETTING=VALUE ...]
-// BLOW: a preset, or N s of an impulse on a man of 78 kg and 1.78 m (scaled as in the judge).
+// How falls look to the judge, over characters, blows and directions: each fall's clauses that fail, how
+// often each clause fails on each character, the share of falls that pass each criterion, and the means of
+// what belongs to a set. ukemi_falls CHARACTER,... SEGMENT,... BLOW,... AZIMUTH,... [SETTING=VALUE ...] BLOW:
+// a preset, or N s of an impulse on a man of 78 kg and 1.78 m (scaled as in the judge).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -77,6 +77,28 @@ void print_row(const Blow& blow) {
         fmt::print(" {} {}={:.4g}", criterion.number, clause.name, clause.value.value_or(NAN));
   if (blow.limits.over_1deg > 0) fmt::print(" OVER {}", blow.limits.over_1deg);
   fmt::print("\n");
+}
+
+/// How many falls of each character fail each clause, the clause that fails most first.
+void print_failures(const std::vector<Blow>& blows) {
+  std::map<std::string, std::map<std::string, int>> failed;
+  for (const Blow& blow : blows) {
+    if (!blow.judgement || !blow.judgement->fall) continue;
+    const std::string character = blow.what.substr(0, blow.what.find(' '));
+    for (const Criterion& criterion : blow.judgement->criteria)
+      for (const Clause& clause : criterion.clauses)
+        if (!clause.holds()) ++failed[fmt::format("{} {}", criterion.number, clause.name)][character];
+  }
+  std::vector<std::pair<int, std::string>> rows;
+  for (const auto& [clause, characters] : failed) {
+    int sum = 0;
+    std::string row;
+    for (const auto& [character, count] : characters)
+      sum += count, row += fmt::format(" {} {}", character, count);
+    rows.emplace_back(-sum, fmt::format("{:<24} fails {:>3}:{}", clause, sum, row));
+  }
+  std::sort(rows.begin(), rows.end());
+  for (const auto& [sum, row] : rows) fmt::print("{}\n", row);
 }
 
 double mean(const std::vector<double>& values) {
@@ -155,5 +177,6 @@ int main(int argc, char** argv) {
   work(0);
   other.join();
   for (const Blow& blow : blows) print_row(blow);
+  print_failures(blows);
   print_set(blows);
 }

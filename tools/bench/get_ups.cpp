@@ -2,8 +2,10 @@
 // the worst of all.
 // ukemi_get_ups CHARACTER[@HEIGHT_M],... [FIRST,LAST [SETTING=VALUE ...]]
 // A single pose is shown frame by frame as well.
+// cost: CPU seconds of planning it, once more.
 // off balance: centre of mass outside the skin that bears (least of it with and without momentum), by phase.
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +19,7 @@
 #include "body/ground.h"
 #include "body/weight.h"
 #include "judge/judge.h"
+#include "rise/get_up.h"
 
 namespace ukemi {
 namespace {
@@ -122,6 +125,23 @@ void see_motion(const BakedClip& outcome, const std::vector<BodyPose>& frames, R
     }
 }
 
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// CPU time in which the get-up is planned: once more, from the frame in which it begins.
+double planning_s(const Prepared& prepared, const BakeSettings& settings,
+                  const PerSegment<std::vector<Vec3>>& skin, const std::vector<BodyPose>& frames,
+                  std::size_t first, double fps) {
+  const double before_s = thread_seconds();
+  const auto planned = plan_get_up(prepared.body, prepared.range, frames[first > 0 ? first - 1 : 0],
+                                   frames[first], prepared.start.state.segments, skin,
+                                   {settings.get_up_style, static_cast<std::uint64_t>(settings.seed), fps});
+  return planned ? thread_seconds() - before_s : NAN;
+}
+
 void see(const Character& character, const BakeSettings& settings, const BakedClip& outcome, Row& row) {
   const Prepared& prepared = outcome.prepared;
   const Clip& clip = outcome.timeline.clip;
@@ -139,6 +159,7 @@ void see(const Character& character, const BakeSettings& settings, const BakedCl
   see_motion(outcome, frames, row);
   const int first = static_cast<int>(std::lround(outcome.get_up->begins_s * clip.fps));
   row.lying = name(lying_of(prepared.body, frames[static_cast<std::size_t>(first)]));
+  row.cost_s = planning_s(prepared, settings, outer, frames, static_cast<std::size_t>(first), clip.fps);
   row.duration_s = outcome.get_up->stands_s - outcome.get_up->begins_s;
   row.route = outcome.get_up->route;
   row.over_1deg = outcome.human.over_1deg;
@@ -168,10 +189,11 @@ void print_row(const Row& row) {
   fmt::print("{:<28}", row.what);
   if (!row.error.empty()) return fmt::print(" {}\n", row.error);
   fmt::print(
-      " {:<10} {:<10} {:.1f} s score {:.2f} slide {:4.1f} ({}) skin {:4.1f} mm {:.1f} m/s ({}) over {}{}\n  "
+      " {:<10} {:<10} {:.1f} s cost {:.2f} s score {:.2f} slide {:4.1f} ({}) skin {:4.1f} mm {:.1f} m/s ({}) "
+      "over {}{}\n  "
       " ",
-      row.lying, row.route, row.duration_s, row.score, 1e3 * row.slide_m, row.slides, 1e3 * row.skin_m,
-      row.speed_m_s, row.fastest, row.over_1deg, row.failed);
+      row.lying, row.route, row.duration_s, row.cost_s, row.score, 1e3 * row.slide_m, row.slides,
+      1e3 * row.skin_m, row.speed_m_s, row.fastest, row.over_1deg, row.failed);
   for (const PhaseFigures& phase : row.phases)
     fmt::print(" {} {:.0f}({:.0f}) mm skin {:.0f};", phase.name, 1e3 * phase.mass_m, 1e3 * phase.least_m,
                1e3 * phase.skin_m);
@@ -180,7 +202,7 @@ void print_row(const Row& row) {
 
 void print_worst(const std::vector<Row>& rows) {
   std::map<std::string, PhaseFigures> phases;
-  std::vector<double> slide, skin, balance, score;
+  std::vector<double> slide, skin, balance, score, cost;
   for (const Row& row : rows) {
     if (!row.error.empty()) continue;
     double worst = -1.0;
@@ -192,7 +214,7 @@ void print_worst(const std::vector<Row>& rows) {
       worst = std::max(worst, phase.least_m);
     }
     balance.push_back(worst), slide.push_back(row.slide_m), skin.push_back(row.skin_m);
-    score.push_back(row.score);
+    score.push_back(row.score), cost.push_back(row.cost_s);
   }
   for (const auto& [name, phase] : phases)
     fmt::print("{:<14} off balance {:4.0f} ({:4.0f}) mm, skin {:4.1f} mm\n", name, 1e3 * phase.mass_m,
@@ -209,6 +231,7 @@ void print_worst(const std::vector<Row>& rows) {
   print("slide", slide, 0.01, 1e3);
   print("skin", skin, 0.01, 1e3);
   print("score", score, 0.93, 1.0);
+  print("cost s", cost, 0.1, 1.0);
 }
 
 }  // namespace
