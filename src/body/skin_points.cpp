@@ -107,7 +107,8 @@ void for_each_skin_vertex(const Character& character, const Humanoid& humanoid, 
       const auto& s = bones.owner(node);
       if (!s) continue;
       const Vec3 place = segment_from_world[index(*s)] * (humanoid.world_from_file * p);
-      see({static_cast<int>(m), static_cast<int>(v), node, *s, place, bones.carries(node, rigid, place)});
+      const bool on_bone = bones.carries(node, rigid, place) && !is_astray(place.norm(), humanoid.height_m);
+      see({static_cast<int>(m), static_cast<int>(v), node, *s, place, on_bone});
     }
   }
 }

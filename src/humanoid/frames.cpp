@@ -30,7 +30,8 @@ double head_length(const Character& character, const Humanoid& humanoid, const L
 }
 
 /// From the lowest skin of the feet to the highest of the head. Arms, props, wings and the ground do not
-/// count, nor do ears, hair and hats that have bones of their own, except where the head has no other skin.
+/// count, nor do ears, hair and hats that have bones or meshes of their own, except where the head has no
+/// other skin.
 SkinExtent body_extent(const Character& character, const Humanoid& humanoid, const Landmarks& f,
                        const Vec3& up, const std::vector<char>& astray) {
   const Skeleton& skeleton = character.skeleton;
@@ -46,7 +47,10 @@ SkinExtent body_extent(const Character& character, const Humanoid& humanoid, con
     return !astray[node] && (owner[node] == left || owner[node] == right);
   };
   if (astray[head]) return {};
-  SkinExtent crown = skin_extent(character, f.world, up, is_head);
+  const SkinExtent own =
+      skin_extent(character, f.world, up, [&](int node) { return node == head && skinned[node] != 0; });
+  SkinExtent crown = skin_extent(
+      character, f.world, up, [&](int node) { return is_head(node) && (skinned[node] != 0 || !own.found); });
   if (!crown.found)
     crown = skin_extent(character, f.world, up,
                         [&](int node) { return owner[node] == Segment::head && !astray[node]; });
@@ -57,14 +61,15 @@ SkinExtent body_extent(const Character& character, const Humanoid& humanoid, con
 /// Nodes of the body whose skin lies far away from them: its bind pose has nothing to do with the skeleton.
 std::vector<char> skin_astray(const Character& character, const Humanoid& humanoid, const Landmarks& f,
                               double height, Diagnostics& diagnostics) {
-  const auto owner = segments_of_nodes(character.skeleton, humanoid);
-  std::vector<char> astray(character.skeleton.nodes.size(), 0);
+  std::vector<char> is_bone(character.skeleton.nodes.size(), 0), astray(is_bone);
+  for (const SegmentNodes& segment : humanoid.segments)
+    for (const int node : segment.chain) is_bone[static_cast<std::size_t>(node)] = 1;
   std::size_t count = 0;
   CarriedSkin farthest;
   for (const CarriedSkin& skin : carried_skin(character, f.world)) {
     if (!is_astray(skin.distance, height)) continue;
     astray[static_cast<std::size_t>(skin.node)] = 1;
-    if (!owner[static_cast<std::size_t>(skin.node)]) continue;
+    if (!is_bone[static_cast<std::size_t>(skin.node)]) continue;  // a wing, a spear: as long as it likes
     ++count;
     if (skin.distance > farthest.distance) farthest = skin;
   }
@@ -146,7 +151,7 @@ Unit guess_unit(double height) {
   }
   if (best > 0.0) return {best, {}};
   return {1.741 / height,
-          fmt::format("no usual unit makes the character human-sized ({} file units tall); its height "
+          fmt::format("no usual unit makes the character human-sized ({:.4g} file units tall); its height "
                       "is taken as 1.741 m: --height or --unit sets it",
                       height)};
 }

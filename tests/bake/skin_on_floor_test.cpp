@@ -93,6 +93,20 @@ TEST(SkinOnFloor, ShapesThatCoverTheMeshHaveNoPointsOfTheirOwn) {
   EXPECT_GT(points_of(big_head())[index(Segment::head)], 4u);
 }
 
+TEST(SkinOnFloor, WhatABindPoseThrowsFarAwayHoldsNobodyUp) {
+  Character character = figure();
+  for (Skin& skin : character.skins)
+    for (Affine& bind : skin.inverse_bind) bind = bind * Eigen::Translation3d(0.0, -3.0, 0.0);
+  Diagnostics diagnostics;
+  BakeSettings settings;
+  settings.simulation.duration_s = 1.0;
+  const auto baked = bake(character, settings, diagnostics);
+  ASSERT_TRUE(baked) << baked.error().message();
+  EXPECT_FALSE(baked->behaviour.fall_begins_s);
+  EXPECT_FALSE(baked->figures.first_ground_contact_s);
+  EXPECT_LT(baked->skin.max.body_m, 0.02);
+}
+
 /// Trousers that reach the floor beside the feet.
 Character wide_trousers() {
   Character character = figure();

@@ -198,6 +198,79 @@ TEST(PublicFaults, ABindPoseOfAnotherSkeletonIsSaidAndTheHeightIsThatOfTheBones)
   EXPECT_EQ(plain.warnings(), "");
 }
 
+/// figure.gltf with a bone on `parent` at its place, and a long box: skin of that bone, or a mesh on it.
+Mapped with_something_on(const char* parent, bool skinned) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  EXPECT_TRUE(character);
+  Skeleton& skeleton = character->skeleton;
+  skeleton.nodes.push_back({"Something", skeleton.find(parent), {}});
+  EXPECT_TRUE(skeleton.sort());
+  MeshPart box;
+  box.node = skeleton.size() - 1;
+  for (const float y : {0.2f, 2.8f})
+    for (const float x : {0.0f, 0.02f}) box.positions.emplace_back(x, y, 0.0f);
+  box.indices = {0, 1, 2, 1, 2, 3};
+  if (skinned) {
+    box.skin = 0;
+    Skin& skin = character->skins.at(0);
+    skin.joints.push_back(box.node);
+    skin.inverse_bind.push_back(Affine::Identity());
+    const auto joint = static_cast<std::uint16_t>(skin.joints.size() - 1);
+    box.joints.assign(box.positions.size(), {joint, 0, 0, 0});
+    box.weights.assign(box.positions.size(), {1.0f, 0.0f, 0.0f, 0.0f});
+  }
+  character->parts.push_back(box);
+  auto humanoid = map_humanoid(*character, {}, diagnostics);
+  return {std::move(*character), std::move(humanoid), std::move(diagnostics)};
+}
+
+TEST(PublicFaults, HatsSpearsAndWingsAreNeitherHeightNorABadBindPose) {
+  for (const char* parent : {"Head", "RightHand", "Chest"})
+    for (const bool skinned : {false, true}) {
+      const Mapped m = with_something_on(parent, skinned);
+      ASSERT_TRUE(m.humanoid);
+      EXPECT_NEAR(m.humanoid->height_m, 1.74, 0.01) << parent << skinned;
+      EXPECT_EQ(m.warnings(), "") << parent << skinned;
+    }
+}
+
+TEST(PublicFaults, AJointNamedHeadBelowTheHipsIsNoHead) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  Skeleton& skeleton = character->skeleton;
+  skeleton.nodes[skeleton.find("Head")].name = "Skull_x";
+  skeleton.nodes[skeleton.find("Neck")].name = "collar";
+  Node bag{"Head", skeleton.find("Hips"), {}};
+  bag.rest.translation = Vec3(0.0, -0.15, 0.1);
+  skeleton.nodes.push_back(bag);
+  ASSERT_TRUE(skeleton.sort());
+  character->skins.at(0).joints.push_back(skeleton.size() - 1);
+  character->skins.at(0).inverse_bind.push_back(Affine::Identity());
+  const auto humanoid = map_humanoid(*character, {}, diagnostics);
+  ASSERT_TRUE(humanoid) << humanoid.error().what;
+  EXPECT_EQ(skeleton.nodes[humanoid->segments[index(Segment::head)].node()].name, "Skull_x");
+  EXPECT_NEAR(humanoid->height_m, 1.74, 0.01);
+}
+
+TEST(PublicFaults, ASecondFigureIsSaidWhateverItsBonesAreCalled) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/two_figures.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  int renamed = 0;  // the second figure's bones, to what says nothing
+  for (Node& node : character->skeleton.nodes)
+    if (node.name.ends_with(".001")) node.name = "b" + std::to_string(renamed++);
+  ASSERT_GT(renamed, 15);
+  ASSERT_TRUE(map_humanoid(*character, {}, diagnostics));
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("--root 'b0'"), std::string::npos)
+      << diagnostics.warnings()[0].what;
+}
+
 TEST(PublicFaults, AThumbTurnsWithAHandOfTwoBonesInOnePlace) {
   Diagnostics diagnostics;
   auto character =
