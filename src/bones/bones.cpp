@@ -391,6 +391,18 @@ void add_stray_bones(const Reader& reader, Bones& bones) {
     }
 }
 
+/// What the user can do where bones are missing.
+std::string fix_for_missing(const Bones& bones) {
+  const bool upper_alone = std::any_of(std::begin(kMustHave), std::end(kMustHave), [&](Segment s) {
+    const bool is_lower =
+        s == Segment::forearm_l || s == Segment::forearm_r || s == Segment::shank_l || s == Segment::shank_r;
+    return is_lower && bones[s] < 0 && bones[segment_at(index(s) - 1)] >= 0;
+  });
+  return upper_alone ? "an arm or a leg needs two bones: name the lower ones with --map SEGMENT=NODE, or "
+                       "give limbs of one bone a second one"
+                     : "if the character has these bones, name them with --map SEGMENT=NODE";
+}
+
 Error not_a_humanoid(const Character& character, const Bones& bones, bool any_skin) {
   std::vector<std::string> found, missing;
   for (const Segment s : kMustHave) {
@@ -413,7 +425,7 @@ Error not_a_humanoid(const Character& character, const Bones& bones, bool any_sk
           "shank) by VRM data, names and shape in {}; found {}; {}",
           what_is_there, found.empty() ? "none of them" : fmt::format("{}", fmt::join(found, ", ")), fault),
       missing.empty() ? "if these are the character's bones, parent them as the limbs of a body"
-                      : "if the character has these bones, name them with --map SEGMENT=NODE");
+                      : fix_for_missing(bones));
 }
 
 /// A hand or foot whose name fits and says no side is that of the limb that it hangs on.

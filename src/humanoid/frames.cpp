@@ -406,6 +406,23 @@ void choose_sides(const Character& character, const Reference& reference, Humano
                                  by == "user" ? "you" : "they"));
 }
 
+/// Rotations below a scale that differs by axis shear: no clip of rotations moves such a body as a skeleton.
+void warn_of_uneven_scale(const Character& character, const Humanoid& humanoid, Diagnostics& diagnostics) {
+  constexpr double kEven = 1.02;
+  for (const SegmentNodes& segment : humanoid.segments)
+    for (int node = segment.node(); node >= 0; node = character.skeleton.nodes[node].parent) {
+      const Vec3 scale = character.skeleton.nodes[node].rest.scale.cwiseAbs();
+      if (scale.maxCoeff() <= kEven * scale.minCoeff()) continue;
+      diagnostics.warn(
+          character.path.string(),
+          fmt::format(
+              "the scale of '{}' differs by axis ({:.3g} {:.3g} {:.3g}): what hangs on it shears when it "
+              "turns, and joints may leave their ranges; apply the scale in the program that made it",
+              character.skeleton.label(node), scale.x(), scale.y(), scale.z()));
+      return;
+    }
+}
+
 Status find_frames(const Character& character, const HumanoidOptions& options, Humanoid& humanoid,
                    Diagnostics& diagnostics) {
   Reference reference = find_reference(character, humanoid, options, diagnostics);
@@ -416,6 +433,7 @@ Status find_frames(const Character& character, const HumanoidOptions& options, H
         "two legs with an arm on each side",
         "if the character is a human, check the bones with --map SEGMENT=NODE");
   choose_sides(character, reference, humanoid, diagnostics);
+  warn_of_uneven_scale(character, humanoid, diagnostics);
   humanoid.rest_pose = class_of_rest(character, humanoid);
   FrameBuilder builder(character, humanoid, reference);
   builder.build(clavicle_elevation(class_of(builder.figure, reference.up)));

@@ -2,6 +2,7 @@
 // differ from it in one thing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -269,6 +270,41 @@ TEST(PublicFaults, ASecondFigureIsSaidWhateverItsBonesAreCalled) {
   ASSERT_EQ(diagnostics.warnings().size(), 1u);
   EXPECT_NE(diagnostics.warnings()[0].what.find("--root 'b0'"), std::string::npos)
       << diagnostics.warnings()[0].what;
+}
+
+TEST(PublicFaults, AScaleThatDiffersByAxisIsSaid) {
+  for (const double along : {1.0, 1.3}) {
+    Diagnostics diagnostics;
+    auto character =
+        load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+    ASSERT_TRUE(character);
+    Node& hips = character->skeleton.nodes[character->skeleton.find("Hips")];
+    hips.rest.scale = Vec3(1.0, along, 1.0);
+    ASSERT_TRUE(map_humanoid(*character, {}, diagnostics));
+    const auto& said = diagnostics.warnings();
+    EXPECT_EQ(
+        std::count_if(said.begin(), said.end(),
+                      [](const Warning& w) { return w.what.find("'Hips' differs by axis") != w.what.npos; }),
+        along == 1.0 ? 0 : 1);
+  }
+}
+
+TEST(PublicFaults, ALimbOfOneBoneIsRefusedWithWhatItNeeds) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  for (const char* bone : {"LeftForeArm", "LeftHand", "RightForeArm", "RightHand"}) {
+    Node& node = character->skeleton.nodes[character->skeleton.find(bone)];
+    node.name = "tip_end";
+    node.rest.translation = Vec3::Zero();
+  }
+  character->parts.clear();
+  character->skins.clear();
+  const auto refused = map_humanoid(*character, {}, diagnostics);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().fix.find("an arm or a leg needs two bones"), std::string::npos)
+      << refused.error().message();
 }
 
 TEST(PublicFaults, AThumbTurnsWithAHandOfTwoBonesInOnePlace) {
