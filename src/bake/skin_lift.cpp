@@ -11,6 +11,7 @@ namespace ukemi {
 namespace {
 
 constexpr double kAllowed_m = 0.009;
+constexpr double kMost_m = 0.25;  // a body in a ball of skin
 constexpr double kNoticed_m = 0.020;
 
 }  // namespace
@@ -18,7 +19,7 @@ constexpr double kNoticed_m = 0.020;
 double lift_blended_skin(const Actor& actor, const SkinOverFloor& skin, Timeline& timeline) {
   std::vector<double> depths;
   for (const Pose& frame : timeline.clip.frames) depths.push_back(skin.depth(frame).body_m);
-  const std::vector<double> up = lifts(depths, kAllowed_m, timeline.clip.fps);
+  const std::vector<double> up = lifts(depths, kAllowed_m, kMost_m, timeline.clip.fps);
   const std::vector<int> moved = movers(actor.character.skeleton, actor.humanoid);
   for (std::size_t f = 0; f < up.size(); ++f) {
     if (up[f] <= 0.0) continue;

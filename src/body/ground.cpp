@@ -12,7 +12,7 @@ constexpr int kDirections = 64;        // in which outermost points are sought
 constexpr double kAllowedDip = 0.005;  // m
 constexpr double kMostLift = 0.040;    // m
 constexpr double kSmoothing_s = 0.1;   // to either side
-constexpr double kLiftSpeed = 0.1;     // m/s, from the first frame on
+constexpr double kLiftSpeed = 0.1;     // m/s, from the first frame on, of up to 40 mm; faster of more
 
 double lowest(const BodyPose& frame, const PerSegment<std::vector<Vec3>>& skin) {
   double low = 0.0;
@@ -40,11 +40,11 @@ PerSegment<std::vector<Vec3>> outermost_skin(const Character& character, const H
   return skin;
 }
 
-std::vector<double> lifts(const std::vector<double>& depth_m, double allowed_m, double fps) {
+std::vector<double> lifts(const std::vector<double>& depth_m, double allowed_m, double most_m, double fps) {
   const int count = static_cast<int>(depth_m.size());
   const int reach = static_cast<int>(std::lround(kSmoothing_s * fps));
   std::vector<double> needed;
-  for (const double depth : depth_m) needed.push_back(std::clamp(depth - allowed_m, 0.0, kMostLift));
+  for (const double depth : depth_m) needed.push_back(std::clamp(depth - allowed_m, 0.0, most_m));
   // The mean of the largest needs around is never below the need itself.
   const auto around = [&](const std::vector<double>& values, int i, auto combine) {
     const auto first = values.begin() + std::max(0, i - reach);
@@ -62,7 +62,7 @@ std::vector<double> lifts(const std::vector<double>& depth_m, double allowed_m, 
       for (auto it = first; it != last; ++it) sum += *it;
       return sum / static_cast<double>(last - first);
     });
-    result.push_back(std::min(mean, kLiftSpeed * i / fps));
+    result.push_back(std::min(mean, kLiftSpeed * std::max(1.0, mean / kMostLift) * i / fps));
   }
   return result;
 }
@@ -71,7 +71,7 @@ double lift_skin_above_floor(std::vector<BodyPose>& frames, double fps,
                              const PerSegment<std::vector<Vec3>>& skin) {
   std::vector<double> depths;
   for (const BodyPose& frame : frames) depths.push_back(-lowest(frame, skin));
-  const std::vector<double> up = lifts(depths, kAllowedDip, fps);
+  const std::vector<double> up = lifts(depths, kAllowedDip, kMostLift, fps);
   double most = 0.0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     for (Rigid& segment : frames[i]) segment.translation.y() += up[i];

@@ -15,11 +15,11 @@ PerSegment<std::vector<Vec3>> outermost_skin(const Character& character, const H
                                              const ArticulatedBody& body);
 
 /// How far to raise frames whose skin lies `depth_m` below the floor, so that it lies no deeper than
-/// `allowed_m`: smoothly over a tenth of a second and by 40 mm at most; the first frame not at all.
-std::vector<double> lifts(const std::vector<double>& depth_m, double allowed_m, double fps);
+/// `allowed_m`: smoothly over a tenth of a second and by `most_m` at most; the first frame not at all.
+std::vector<double> lifts(const std::vector<double>& depth_m, double allowed_m, double most_m, double fps);
 
-/// Raises frames whose skin lies below the floor (y = 0) by more than 5 mm, see lifts. Returns the largest
-/// lift, metres.
+/// Raises frames whose skin lies below the floor (y = 0) by more than 5 mm, by 40 mm at most, see lifts.
+/// Returns the largest lift, metres.
 double lift_skin_above_floor(std::vector<BodyPose>& frames, double fps,
                              const PerSegment<std::vector<Vec3>>& skin);
 

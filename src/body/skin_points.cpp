@@ -65,6 +65,16 @@ class BoneNodes {
   PerSegment<bool> is_handless_{};  // a forearm that the hand is one with
 };
 
+/// Nodes whose skin the bind pose throws far away.
+std::vector<char> astray_nodes(const Character& character, const Humanoid& humanoid,
+                               const std::vector<Affine>& world) {
+  std::vector<char> astray(world.size(), 0);
+  const double height = humanoid.height_m / humanoid.world_from_file.scale;
+  for (const CarriedSkin& skin : carried_skin(character, world))
+    astray[static_cast<std::size_t>(skin.node)] = is_astray(skin.distance, height) ? 1 : 0;
+  return astray;
+}
+
 /// A vertex as its part's matrices move it, and the node of its largest weight.
 std::pair<Vec3, int> posed(const MeshPart& part, const Skin& skin, const std::vector<Affine>& world_from_mesh,
                            std::size_t v) {
@@ -90,6 +100,7 @@ void for_each_skin_vertex(const Character& character, const Humanoid& humanoid, 
                           const BodyPose& segments, const std::function<void(const SkinVertex&)>& see) {
   const BoneNodes bones(character, humanoid);
   const std::vector<Affine> world = world_transforms(character.skeleton, pose);
+  const std::vector<char> astray = astray_nodes(character, humanoid, world);
   PerSegment<Rigid> segment_from_world;
   for (int s = 0; s < kSegmentCount; ++s) segment_from_world[s] = segments[s].inverse();
   for (std::size_t m = 0; m < character.parts.size(); ++m) {
@@ -107,7 +118,8 @@ void for_each_skin_vertex(const Character& character, const Humanoid& humanoid, 
       const auto& s = bones.owner(node);
       if (!s) continue;
       const Vec3 place = segment_from_world[index(*s)] * (humanoid.world_from_file * p);
-      see({static_cast<int>(m), static_cast<int>(v), node, *s, place, bones.carries(node, rigid, place)});
+      const bool on_bone = !astray[static_cast<std::size_t>(node)] && bones.carries(node, rigid, place);
+      see({static_cast<int>(m), static_cast<int>(v), node, *s, place, on_bone});
     }
   }
 }

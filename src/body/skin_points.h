@@ -14,7 +14,8 @@ struct SkinVertex {
   int node = -1;    // that moves it most
   Segment segment = Segment::pelvis;
   Vec3 place = Vec3::Zero();  // segment frame, m
-  /// On a bone of the segment, its fingers or toes, or a rigid mesh on one: not on what else hangs there.
+  /// On a bone of the segment, its fingers or toes, or a rigid mesh on one: not on what else hangs there,
+  /// nor where the bind pose throws it far away.
   bool on_bone = false;
 };
 

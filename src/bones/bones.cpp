@@ -245,12 +245,26 @@ void pelvis_by_name(const Reader& reader, Bones& bones) {
   if (best.node >= 0) bones.set(Segment::pelvis, best.node, "name");
 }
 
-/// Whether `head` belongs to the trunk that carries the arms, and carries no limb itself.
+/// Whether `head` lies nearer to the shoulders than to the hips, or beyond them: a bone of that name below
+/// the pelvis is another's head, or a control.
+bool lies_high(const Skeleton& skeleton, const Bones& bones, int head) {
+  const std::vector<Affine> world = world_transforms(skeleton, rest_pose(skeleton));
+  const auto middle = [&](Segment left, Segment right) -> Vec3 {
+    return 0.5 * (world[bones[left]].translation() + world[bones[right]].translation());
+  };
+  const Vec3 hips = middle(Segment::thigh_l, Segment::thigh_r);
+  const Vec3 trunk = middle(Segment::upperarm_l, Segment::upperarm_r) - hips;
+  return (world[head].translation() - hips).dot(trunk) >= 0.5 * trunk.squaredNorm();
+}
+
+/// Whether `head` belongs to the trunk that carries the arms, lies at its upper end, and carries no limb
+/// itself.
 bool is_above_the_trunk(const Skeleton& skeleton, const Bones& bones, int head) {
   const int arms = arms_fork(skeleton, bones), legs = legs_fork(skeleton, bones);
   const int trunk = common_ancestor(skeleton, legs, arms);
   const int meets = common_ancestor(skeleton, head, arms);
   if (meets < 0 || !is_at_or_below(skeleton, trunk, meets)) return false;
+  if (!lies_high(skeleton, bones, head)) return false;
   for (const Segment limb : {Segment::upperarm_l, Segment::upperarm_r, Segment::thigh_l, Segment::thigh_r})
     if (is_at_or_below(skeleton, head, bones[limb]) || is_at_or_below(skeleton, bones[limb], head))
       return false;
@@ -377,6 +391,18 @@ void add_stray_bones(const Reader& reader, Bones& bones) {
     }
 }
 
+/// What the user can do where bones are missing.
+std::string fix_for_missing(const Bones& bones) {
+  const bool upper_alone = std::any_of(std::begin(kMustHave), std::end(kMustHave), [&](Segment s) {
+    const bool is_lower =
+        s == Segment::forearm_l || s == Segment::forearm_r || s == Segment::shank_l || s == Segment::shank_r;
+    return is_lower && bones[s] < 0 && bones[segment_at(index(s) - 1)] >= 0;
+  });
+  return upper_alone ? "an arm or a leg needs two bones: name the lower ones with --map SEGMENT=NODE, or "
+                       "give limbs of one bone a second one"
+                     : "if the character has these bones, name them with --map SEGMENT=NODE";
+}
+
 Error not_a_humanoid(const Character& character, const Bones& bones, bool any_skin) {
   std::vector<std::string> found, missing;
   for (const Segment s : kMustHave) {
@@ -399,7 +425,28 @@ Error not_a_humanoid(const Character& character, const Bones& bones, bool any_sk
           "shank) by VRM data, names and shape in {}; found {}; {}",
           what_is_there, found.empty() ? "none of them" : fmt::format("{}", fmt::join(found, ", ")), fault),
       missing.empty() ? "if these are the character's bones, parent them as the limbs of a body"
-                      : "if the character has these bones, name them with --map SEGMENT=NODE");
+                      : fix_for_missing(bones));
+}
+
+/// A hand or foot whose name fits and says no side is that of the limb that it hangs on.
+void ends_without_side(const Reader& reader, Bones& bones) {
+  const Skeleton& skeleton = reader.character.skeleton;
+  const auto children = skeleton.children();
+  for (const Segment end : {Segment::hand_l, Segment::hand_r, Segment::foot_l, Segment::foot_r}) {
+    const int above = bones[segment_at(index(end) - 1)];
+    if (bones[end] >= 0 || above < 0) continue;
+    std::vector<int> fitting;
+    for (const int child : children[static_cast<std::size_t>(above)]) {
+      NameReading name = reader.names[static_cast<std::size_t>(child)];
+      const bool says_no_side = name.side == Side::none;
+      name.side = side_of(end);
+      const bool deforms = !reader.any_skin || reader.skinned[static_cast<std::size_t>(child)];
+      if (reader.allowed[static_cast<std::size_t>(child)] && deforms && says_no_side &&
+          fit(name, part_of(end)) > 0)
+        fitting.push_back(child);
+    }
+    if (fitting.size() == 1) bones.set(end, fitting.front(), "name");
+  }
 }
 
 /// Every source in turn, on the nodes that may be bones.
@@ -413,6 +460,7 @@ Bones search(const Reader& reader, const Bones& given) {
     Bones named;
     limbs_by_name(reader, bones, named);
     fill(bones, named);
+    ends_without_side(reader, bones);
   }
   trunk();
   trunk_by_topology(reader, bones);
@@ -456,7 +504,8 @@ bool same_place(const Character& character, int a, int b) {
   return (world[a].translation() - world[b].translation()).norm() < 0.05 * size;
 }
 
-/// Says so where what is left of the file holds a second set of named bones.
+/// Says so where what is left of the file holds a second body, by names or, of bones that move a skin, by
+/// shape.
 void warn_of_another_figure(const Character& character, const Bones& bones, Diagnostics& diagnostics) {
   const Skeleton& skeleton = character.skeleton;
   const int top =
@@ -467,13 +516,11 @@ void warn_of_another_figure(const Character& character, const Bones& bones, Diag
   const std::vector<char> taken = nodes_below(skeleton, top);
   for (std::size_t i = 0; i < allowed.size(); ++i) allowed[i] = allowed[i] && !taken[i];
   const Reader reader(character, std::move(allowed));
-  Bones other;
-  limbs_by_name(reader, Bones(), other);
-  pelvis_by_name(reader, other);
-  head_by_name(reader, other);
-  trunk_by_topology(reader, other);
+  const Bones other = search(reader, Bones());
   const int pelvis = other[Segment::pelvis];
-  if (!complete(other) || (reader.any_skin && !reader.weighted[other[Segment::thigh_l]]) ||
+  if (!complete(other) || !misplaced(character, other).empty()) return;
+  const bool by_shape = other.by[index(Segment::thigh_l)] == "topology";
+  if ((reader.any_skin ? !reader.weighted[other[Segment::thigh_l]] : by_shape) ||
       same_place(character, bones[Segment::pelvis], pelvis))
     return;
   diagnostics.warn(character.path.string(),

@@ -63,6 +63,9 @@ struct Placement {
          {Segment::upperarm_l, Segment::upperarm_r, Segment::thigh_l, Segment::thigh_r, Segment::pelvis})
       if (is_at_or_below(skeleton, bones[Segment::head], bones[limb]))
         return fmt::format("{} hangs above {}", text(Segment::head), text(limb));
+    for (const Segment limb : {Segment::upperarm_l, Segment::upperarm_r, Segment::thigh_l, Segment::thigh_r})
+      if (is_at_or_below(skeleton, bones[limb], bones[Segment::head]))
+        return fmt::format("{} hangs below {}", text(Segment::head), text(limb));
     return {};
   }
 

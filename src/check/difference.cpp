@@ -40,13 +40,32 @@ int nearest_matched_ancestor(const Skeleton& skeleton, int node, const std::map<
   return -1;
 }
 
-/// Nodes by name, meshes apart: bones may share their names. What has no name of its own goes by its number.
-std::map<std::string, int> joints_by_name(const Character& character) {
+/// Nodes that the clip moves, and those above and below them.
+std::vector<char> moved_nodes(const Skeleton& skeleton, const Animation& animation) {
+  std::vector<char> has_track(skeleton.nodes.size(), 0);
+  for (const Track& track : animation.tracks)
+    if (track.node >= 0) has_track[static_cast<std::size_t>(track.node)] = 1;
+  std::vector<char> below(has_track), above(has_track);
+  for (const int node : skeleton.order)
+    if (const int parent = skeleton.nodes[node].parent; parent >= 0 && below[parent]) below[node] = 1;
+  for (auto it = skeleton.order.rbegin(); it != skeleton.order.rend(); ++it)
+    if (const int parent = skeleton.nodes[*it].parent; parent >= 0 && above[*it]) above[parent] = 1;
+  for (std::size_t i = 0; i < below.size(); ++i) below[i] = below[i] || above[i] ? 1 : 0;
+  return below;
+}
+
+/// Nodes by name, meshes apart: bones may share their names, and of two figures with the same names those of
+/// the one that moves have them. What has no name of its own goes by its number.
+std::map<std::string, int> joints_by_name(const Character& character, const Animation& animation) {
   const Skeleton& skeleton = character.skeleton;
   std::vector<char> is_bone(skeleton.nodes.size(), 1);
   for (const MeshPart& part : character.parts)
     if (part.skin >= 0 && part.node >= 0) is_bone[static_cast<std::size_t>(part.node)] = 0;
   std::map<std::string, int> nodes = nodes_by_plain_name(skeleton, is_bone);
+  const std::vector<char> moved = moved_nodes(skeleton, animation);
+  for (std::size_t i = 0; i < is_bone.size(); ++i) is_bone[i] = is_bone[i] && moved[i] ? 1 : 0;
+  for (const auto& [name, node] : nodes_by_plain_name(skeleton, is_bone))
+    if (node >= 0) nodes[name] = node;
   std::erase_if(nodes, [](const auto& named) { return named.second < 0; });
   std::vector<char> has_name(skeleton.nodes.size(), 0);
   for (const auto& [name, node] : nodes) has_name[static_cast<std::size_t>(node)] = 1;
@@ -55,10 +74,12 @@ std::map<std::string, int> joints_by_name(const Character& character) {
   return nodes;
 }
 
-std::vector<Match> match_joints(const Character& a, const Character& b, Difference& difference) {
-  std::map<std::string, int> in_b = joints_by_name(b);
+std::vector<Match> match_joints(const PlacedClip& clip_a, const PlacedClip& clip_b, Difference& difference) {
+  const Character &a = *clip_a.character, &b = *clip_b.character;
+  std::map<std::string, int> in_b = joints_by_name(b, *clip_b.animation);
   std::vector<std::string> name_in_a(a.skeleton.nodes.size());
-  for (const auto& [name, node] : joints_by_name(a)) name_in_a[static_cast<std::size_t>(node)] = name;
+  for (const auto& [name, node] : joints_by_name(a, *clip_a.animation))
+    name_in_a[static_cast<std::size_t>(node)] = name;
   std::vector<Match> matches;
   std::map<int, int> match_of_a;
   for (const int i : a.skeleton.order) {
@@ -227,7 +248,7 @@ Result<Difference> difference_of(const PlacedClip& a, const PlacedClip& b,
   difference.clip_b = b.animation->name;
   difference.duration_a_s = a.animation->duration_s();
   difference.duration_b_s = b.animation->duration_s();
-  std::vector<Match> matches = match_joints(*a.character, *b.character, difference);
+  std::vector<Match> matches = match_joints(a, b, difference);
   if (matches.empty())
     return input_error(b.character->path,
                        "no joint has the same name as one of " + a.character->path.string(),

@@ -14,9 +14,11 @@ namespace {
 
 // A quantity that moves no node by more than this is still.
 constexpr double kStillM = 1e-7;
-// A node without children stands for skin that reaches as far as its bone is long, at most this.
+// A node without children stands for skin that reaches as far as its bone is long, at most this; a mesh or an
+// end in the place of the bone, as far as that bone.
 constexpr double kTipMaxM = 0.2;
 constexpr double kTipMinM = 0.01;
+constexpr double kSamePlaceM = 1e-4;
 // Share of the bound that one curve may use up alone. Errors of a chain's joints rarely point the same way.
 // Of 0.3 to 1, tried on falls and flinches, all leave as many keys within 2 %.
 constexpr double kShare = 0.5;
@@ -71,6 +73,14 @@ class Rig {
   }
 
  private:
+  /// To the next node above in another place.
+  double bone_length_m(const std::vector<Affine>& nodes, int node) const {
+    for (int above = skeleton_.nodes[node].parent; above >= 0; above = skeleton_.nodes[above].parent)
+      if (const double length = (nodes[node].translation() - nodes[above].translation()).norm();
+          length > kSamePlaceM)
+        return length;
+    return kTipMaxM;
+  }
   void measure(const Pose& pose) {
     const std::vector<Affine> nodes = world(pose);
     const auto below = skeleton_.children();
@@ -80,8 +90,7 @@ class Rig {
       metres_per_unit_[i] = std::max(metres_per_unit_[i], above.linear().norm() / std::sqrt(3.0));
       double tip_m = 0.0;
       if (below[i].empty()) {
-        const double bone_m = parent < 0 ? kTipMaxM : (nodes[i].translation() - above.translation()).norm();
-        tip_m = std::clamp(bone_m, kTipMinM, kTipMaxM);
+        tip_m = std::clamp(bone_length_m(nodes, i), kTipMinM, kTipMaxM);
         const double scale = nodes[i].linear().norm() / std::sqrt(3.0);
         tip_[i] = scale > 0.0 ? tip_m / scale : 0.0;
       }

@@ -30,7 +30,8 @@ double head_length(const Character& character, const Humanoid& humanoid, const L
 }
 
 /// From the lowest skin of the feet to the highest of the head. Arms, props, wings and the ground do not
-/// count, nor do ears, hair and hats that have bones of their own, except where the head has no other skin.
+/// count, nor do ears, hair and hats that have bones or meshes of their own, except where the head has no
+/// other skin.
 SkinExtent body_extent(const Character& character, const Humanoid& humanoid, const Landmarks& f,
                        const Vec3& up, const std::vector<char>& astray) {
   const Skeleton& skeleton = character.skeleton;
@@ -46,7 +47,10 @@ SkinExtent body_extent(const Character& character, const Humanoid& humanoid, con
     return !astray[node] && (owner[node] == left || owner[node] == right);
   };
   if (astray[head]) return {};
-  SkinExtent crown = skin_extent(character, f.world, up, is_head);
+  const SkinExtent own =
+      skin_extent(character, f.world, up, [&](int node) { return node == head && skinned[node] != 0; });
+  SkinExtent crown = skin_extent(
+      character, f.world, up, [&](int node) { return is_head(node) && (skinned[node] != 0 || !own.found); });
   if (!crown.found)
     crown = skin_extent(character, f.world, up,
                         [&](int node) { return owner[node] == Segment::head && !astray[node]; });
@@ -57,14 +61,15 @@ SkinExtent body_extent(const Character& character, const Humanoid& humanoid, con
 /// Nodes of the body whose skin lies far away from them: its bind pose has nothing to do with the skeleton.
 std::vector<char> skin_astray(const Character& character, const Humanoid& humanoid, const Landmarks& f,
                               double height, Diagnostics& diagnostics) {
-  const auto owner = segments_of_nodes(character.skeleton, humanoid);
-  std::vector<char> astray(character.skeleton.nodes.size(), 0);
+  std::vector<char> is_bone(character.skeleton.nodes.size(), 0), astray(is_bone);
+  for (const SegmentNodes& segment : humanoid.segments)
+    for (const int node : segment.chain) is_bone[static_cast<std::size_t>(node)] = 1;
   std::size_t count = 0;
   CarriedSkin farthest;
   for (const CarriedSkin& skin : carried_skin(character, f.world)) {
     if (!is_astray(skin.distance, height)) continue;
     astray[static_cast<std::size_t>(skin.node)] = 1;
-    if (!owner[static_cast<std::size_t>(skin.node)]) continue;
+    if (!is_bone[static_cast<std::size_t>(skin.node)]) continue;  // a wing, a spear: as long as it likes
     ++count;
     if (skin.distance > farthest.distance) farthest = skin;
   }
@@ -146,7 +151,7 @@ Unit guess_unit(double height) {
   }
   if (best > 0.0) return {best, {}};
   return {1.741 / height,
-          fmt::format("no usual unit makes the character human-sized ({} file units tall); its height "
+          fmt::format("no usual unit makes the character human-sized ({:.4g} file units tall); its height "
                       "is taken as 1.741 m: --height or --unit sets it",
                       height)};
 }
@@ -401,6 +406,23 @@ void choose_sides(const Character& character, const Reference& reference, Humano
                                  by == "user" ? "you" : "they"));
 }
 
+/// Rotations below a scale that differs by axis shear: no clip of rotations moves such a body as a skeleton.
+void warn_of_uneven_scale(const Character& character, const Humanoid& humanoid, Diagnostics& diagnostics) {
+  constexpr double kEven = 1.02;
+  for (const SegmentNodes& segment : humanoid.segments)
+    for (int node = segment.node(); node >= 0; node = character.skeleton.nodes[node].parent) {
+      const Vec3 scale = character.skeleton.nodes[node].rest.scale.cwiseAbs();
+      if (scale.maxCoeff() <= kEven * scale.minCoeff()) continue;
+      diagnostics.warn(
+          character.path.string(),
+          fmt::format(
+              "the scale of '{}' differs by axis ({:.3g} {:.3g} {:.3g}): what hangs on it shears when it "
+              "turns, and joints may leave their ranges; apply the scale in the program that made it",
+              character.skeleton.label(node), scale.x(), scale.y(), scale.z()));
+      return;
+    }
+}
+
 Status find_frames(const Character& character, const HumanoidOptions& options, Humanoid& humanoid,
                    Diagnostics& diagnostics) {
   Reference reference = find_reference(character, humanoid, options, diagnostics);
@@ -411,6 +433,7 @@ Status find_frames(const Character& character, const HumanoidOptions& options, H
         "two legs with an arm on each side",
         "if the character is a human, check the bones with --map SEGMENT=NODE");
   choose_sides(character, reference, humanoid, diagnostics);
+  warn_of_uneven_scale(character, humanoid, diagnostics);
   humanoid.rest_pose = class_of_rest(character, humanoid);
   FrameBuilder builder(character, humanoid, reference);
   builder.build(clavicle_elevation(class_of(builder.figure, reference.up)));

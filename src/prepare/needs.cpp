@@ -54,6 +54,9 @@ const std::vector<Need>& needs() {
       {{"slope-deg"}, "--scene slope", [](const Given& g) { return g.scene == slope; }},
       {{"fall-height", "tip-speed"}, "--scene fall", [](const Given& g) { return g.scene == fall; }},
       {{"steps", "outcome", "search", "arms", "latency"}, "a body that is alive (--behaviour)", is_alive},
+      {{"muscle", "breath"},
+       "a body that is alive (--behaviour) or gets up",
+       [](const Given& g) { return is_alive(g) || g.settings.get_up_s.has_value(); }},
       {{"tone", "tone-fade"}, "--behaviour limp", [](const Given& g) { return !is_alive(g); }},
       {{"assist"}, "--outcome", [](const Given& g) { return g.settings.outcome.has_value(); }},
       {{"get-up-style"}, "--get-up", [](const Given& g) { return g.settings.get_up_s.has_value(); }},
@@ -67,6 +70,11 @@ const std::vector<Need>& needs() {
       {{"clip-only"},
        "a glTF or FBX to write",
        [](const Given& g) { return writes_gltf(g) || writes(g, {".fbx"}); }},
+      {{"root-motion"},
+       "a glTF or FBX to write: a BVH has it on the hips",
+       [](const Given& g) {
+         return g.settings.ground.root_motion != RootMotion::root || writes_gltf(g) || writes(g, {".fbx"});
+       }},
       {{"key-error-mm"},
        "reduced keys of a glTF to write",
        [](const Given& g) { return g.settings.keys.enabled && writes_gltf(g); }},

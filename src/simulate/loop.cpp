@@ -181,8 +181,8 @@ void Simulation::run(Diagnostics& diagnostics) {
   if (controller_) controller_->start(senses);
   try {
     run_to_end();
-  } catch (const OdeFailure& failure) {
-    throw physics_.fastest(time_s(), fmt::format("the physics engine failed: {}", failure.what()));
+  } catch (const OdeFailure&) {
+    throw physics_.fastest(time_s(), "forces and masses are too far apart for the physics engine");
   }
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/bake.h"
+#include "body/ground.h"
 #include "load/load.h"
 #include "support/extra_data.h"
 
@@ -73,8 +74,18 @@ TEST(SkinOnFloor, OfStylisedCharacters) {
        {"quaternius_glb/platformer_game_pack/Character.glb", "quaternius_glb/RobotExpressive.glb",
         "quaternius_glb/single_knight_pack/KnightCharacter.glb", "kaykit/manny_med_mod.gltf",
         "quaternius_glb/ultimate_space_pack/Astronaut_BarbaraTheBee-transformed.glb",
-        "quaternius_glb/modular_women/Witch.glb", "vrm_addon/Example.vrm"})
+        "quaternius_glb/modular_women/Witch.glb", "vrm_addon/Example.vrm", "vrm_addon/sphere.vrm"})
     expect_above_the_floor(file, character_of(*data / "characters" / file));
+}
+
+TEST(SkinOnFloor, DeepSkinIsLiftedAsFastAsItIsDeep) {
+  const std::vector<double> depth(60, 0.109);
+  const std::vector<double> little = lifts(depth, 0.009, 0.04, 60.0), all = lifts(depth, 0.009, 0.25, 60.0);
+  EXPECT_NEAR(little.back(), 0.04, 1e-9);
+  EXPECT_NEAR(little[12], 0.02, 1e-9);
+  EXPECT_NEAR(all.back(), 0.1, 1e-9);
+  EXPECT_NEAR(all[12], 0.05, 1e-9);
+  EXPECT_EQ(all[0], 0.0);
 }
 
 TEST(SkinOnFloor, ShapesThatCoverTheMeshHaveNoPointsOfTheirOwn) {
@@ -91,6 +102,20 @@ TEST(SkinOnFloor, ShapesThatCoverTheMeshHaveNoPointsOfTheirOwn) {
       points_of(character_of(std::string(UKEMI_ASSETS_FOLDER) + "/characters/mannequin.glb"));
   for (const std::size_t count : mannequin) EXPECT_EQ(count, 0u);
   EXPECT_GT(points_of(big_head())[index(Segment::head)], 4u);
+}
+
+TEST(SkinOnFloor, WhatABindPoseThrowsFarAwayHoldsNobodyUp) {
+  Character character = figure();
+  for (Skin& skin : character.skins)
+    for (Affine& bind : skin.inverse_bind) bind = bind * Eigen::Translation3d(0.0, -3.0, 0.0);
+  Diagnostics diagnostics;
+  BakeSettings settings;
+  settings.simulation.duration_s = 1.0;
+  const auto baked = bake(character, settings, diagnostics);
+  ASSERT_TRUE(baked) << baked.error().message();
+  EXPECT_FALSE(baked->behaviour.fall_begins_s);
+  EXPECT_FALSE(baked->figures.first_ground_contact_s);
+  EXPECT_LT(baked->skin.max.body_m, 0.02);
 }
 
 /// Trousers that reach the floor beside the feet.

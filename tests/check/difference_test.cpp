@@ -53,6 +53,22 @@ TEST(Difference, OfAClipWithItselfIsNone) {
   }
 }
 
+TEST(Difference, OfTwoFiguresWithTheSameNamesTheOneThatMovesHasThem) {
+  const Character alone = chain(0.5);
+  Character both = chain(0.5);
+  for (int i = 0; i < 3; ++i) {
+    Node node = both.skeleton.nodes[i];
+    if (node.parent >= 0) node.parent += 3;
+    both.skeleton.nodes.push_back(node);
+  }
+  ASSERT_TRUE(both.skeleton.sort());
+  const auto difference = difference_of(placed(both), placed(alone), {});
+  ASSERT_TRUE(difference) << difference.error().what;
+  EXPECT_TRUE(difference->within_tolerance);
+  EXPECT_EQ(difference->joints.size(), 3u);
+  EXPECT_TRUE(difference->only_in_b.empty());
+}
+
 TEST(Difference, OfABendIsTheAngleAtTheJointAndTheArcAboveIt) {
   const Character a = chain(radians(10));
   const Character b = chain(radians(12));

@@ -81,6 +81,24 @@ TEST(ReduceKeys, BoundsTheErrorInMetresWhateverTheUnit) {
   EXPECT_LE(a.error_m, 0.0005);
 }
 
+TEST(ReduceKeys, AMeshInThePlaceOfItsBoneReachesAsFarAsTheBone) {
+  Skeleton hand = arm(0.2), with_mesh = arm(0.2);
+  with_mesh.nodes.push_back({"mesh", 1, {}});
+  ASSERT_TRUE(with_mesh.sort());
+  const auto turned = [](const Skeleton& skeleton) {
+    Clip clip{"turn", 60.0, {}, {}};
+    for (int f = 0; f < 121; ++f) {
+      clip.frames.push_back(rest_pose(skeleton));
+      clip.frames.back()[1].rotation = exp_rotation(Vec3(0, 0, std::sin(0.1 * f)));
+    }
+    return clip;
+  };
+  const ReducedClip bare = reduce_keys(hand, turned(hand), {}, {});
+  const ReducedClip meshed = reduce_keys(with_mesh, turned(with_mesh), {}, {});
+  EXPECT_EQ(meshed.keys, bare.keys);
+  EXPECT_LT(meshed.keys, 100u);
+}
+
 TEST(ReduceKeys, HoldsItsBoundOnAFallingBody) {
   const test::Puppet puppet = test::make_puppet();
   const Skeleton& skeleton = puppet.character.skeleton;

@@ -76,6 +76,22 @@ TEST(Placement, AControlNamedHeadOrHipsBesideTheBodyIsNoneOfIt) {
   }
 }
 
+TEST(Placement, AFootOfEitherLegNeedsNoSideOfItsOwn) {
+  Character character = figure();
+  for (const char* side : {"Left", "Right"})
+    for (const auto& [bone, name] : {std::pair("Foot", "foot"), {"Hand", "hand"}}) {
+      const int node = character.skeleton.find("mixamorig:" + std::string(side) + bone);
+      ASSERT_GE(node, 0);
+      character.skeleton.nodes[node].name = name;
+    }
+  const auto humanoid = mapped(character);
+  ASSERT_TRUE(humanoid) << humanoid.error().what;
+  for (const Segment end : {Segment::foot_l, Segment::foot_r, Segment::hand_l, Segment::hand_r})
+    EXPECT_EQ(character.skeleton.nodes[humanoid->segments[index(end)].node()].parent,
+              humanoid->segments[index(end) - 1].node())
+        << name(end);
+}
+
 /// The figure with the legs on a lower body that hangs beside the upper body.
 Character two_bodied(bool names) {
   Builder b;
@@ -170,6 +186,7 @@ TEST(UserMap, SaysWhatIsWrongWithIt) {
       {{{"hand_l", "mixamorig:LeftHand"}, {"hand_r", "mixamorig:LeftHand"}}, "said to be both"},
       {{{"pelvis", "mixamorig:LeftHand"}}, "pelvis (mixamorig:LeftHand)"},
       {{{"head", "mixamorig:Hips"}}, "head (mixamorig:Hips) hangs above"},
+      {{{"head", "mixamorig:LeftHand"}}, "head (mixamorig:LeftHand) hangs below"},
       {{{"forearm_l", "mixamorig:RightForeArm"}}, "does not hang below"},
       {{{"head", "#99"}}, "there is no node #99"}};
   for (const auto& [map, what] : kCases) {

@@ -2,6 +2,7 @@
 // differ from it in one thing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -196,6 +197,114 @@ TEST(PublicFaults, ABindPoseOfAnotherSkeletonIsSaidAndTheHeightIsThatOfTheBones)
   }
   const Mapped plain = with_bind_pose([](std::size_t, Affine&) {});
   EXPECT_EQ(plain.warnings(), "");
+}
+
+/// figure.gltf with a bone on `parent` at its place, and a long box: skin of that bone, or a mesh on it.
+Mapped with_something_on(const char* parent, bool skinned) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  EXPECT_TRUE(character);
+  Skeleton& skeleton = character->skeleton;
+  skeleton.nodes.push_back({"Something", skeleton.find(parent), {}});
+  EXPECT_TRUE(skeleton.sort());
+  MeshPart box;
+  box.node = skeleton.size() - 1;
+  for (const float y : {0.2f, 2.8f})
+    for (const float x : {0.0f, 0.02f}) box.positions.emplace_back(x, y, 0.0f);
+  box.indices = {0, 1, 2, 1, 2, 3};
+  if (skinned) {
+    box.skin = 0;
+    Skin& skin = character->skins.at(0);
+    skin.joints.push_back(box.node);
+    skin.inverse_bind.push_back(Affine::Identity());
+    const auto joint = static_cast<std::uint16_t>(skin.joints.size() - 1);
+    box.joints.assign(box.positions.size(), {joint, 0, 0, 0});
+    box.weights.assign(box.positions.size(), {1.0f, 0.0f, 0.0f, 0.0f});
+  }
+  character->parts.push_back(box);
+  auto humanoid = map_humanoid(*character, {}, diagnostics);
+  return {std::move(*character), std::move(humanoid), std::move(diagnostics)};
+}
+
+TEST(PublicFaults, HatsSpearsAndWingsAreNeitherHeightNorABadBindPose) {
+  for (const char* parent : {"Head", "RightHand", "Chest"})
+    for (const bool skinned : {false, true}) {
+      const Mapped m = with_something_on(parent, skinned);
+      ASSERT_TRUE(m.humanoid);
+      EXPECT_NEAR(m.humanoid->height_m, 1.74, 0.01) << parent << skinned;
+      EXPECT_EQ(m.warnings(), "") << parent << skinned;
+    }
+}
+
+TEST(PublicFaults, AJointNamedHeadBelowTheHipsIsNoHead) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  Skeleton& skeleton = character->skeleton;
+  skeleton.nodes[skeleton.find("Head")].name = "Skull_x";
+  skeleton.nodes[skeleton.find("Neck")].name = "collar";
+  Node bag{"Head", skeleton.find("Hips"), {}};
+  bag.rest.translation = Vec3(0.0, -0.15, 0.1);
+  skeleton.nodes.push_back(bag);
+  ASSERT_TRUE(skeleton.sort());
+  character->skins.at(0).joints.push_back(skeleton.size() - 1);
+  character->skins.at(0).inverse_bind.push_back(Affine::Identity());
+  const auto humanoid = map_humanoid(*character, {}, diagnostics);
+  ASSERT_TRUE(humanoid) << humanoid.error().what;
+  EXPECT_EQ(skeleton.nodes[humanoid->segments[index(Segment::head)].node()].name, "Skull_x");
+  EXPECT_NEAR(humanoid->height_m, 1.74, 0.01);
+}
+
+TEST(PublicFaults, ASecondFigureIsSaidWhateverItsBonesAreCalled) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/two_figures.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  int renamed = 0;  // the second figure's bones, to what says nothing
+  for (Node& node : character->skeleton.nodes)
+    if (node.name.ends_with(".001")) node.name = "b" + std::to_string(renamed++);
+  ASSERT_GT(renamed, 15);
+  ASSERT_TRUE(map_humanoid(*character, {}, diagnostics));
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("--root 'b0'"), std::string::npos)
+      << diagnostics.warnings()[0].what;
+}
+
+TEST(PublicFaults, AScaleThatDiffersByAxisIsSaid) {
+  for (const double along : {1.0, 1.3}) {
+    Diagnostics diagnostics;
+    auto character =
+        load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+    ASSERT_TRUE(character);
+    Node& hips = character->skeleton.nodes[character->skeleton.find("Hips")];
+    hips.rest.scale = Vec3(1.0, along, 1.0);
+    ASSERT_TRUE(map_humanoid(*character, {}, diagnostics));
+    const auto& said = diagnostics.warnings();
+    EXPECT_EQ(
+        std::count_if(said.begin(), said.end(),
+                      [](const Warning& w) { return w.what.find("'Hips' differs by axis") != w.what.npos; }),
+        along == 1.0 ? 0 : 1);
+  }
+}
+
+TEST(PublicFaults, ALimbOfOneBoneIsRefusedWithWhatItNeeds) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  for (const char* bone : {"LeftForeArm", "LeftHand", "RightForeArm", "RightHand"}) {
+    Node& node = character->skeleton.nodes[character->skeleton.find(bone)];
+    node.name = "tip_end";
+    node.rest.translation = Vec3::Zero();
+  }
+  character->parts.clear();
+  character->skins.clear();
+  const auto refused = map_humanoid(*character, {}, diagnostics);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().fix.find("an arm or a leg needs two bones"), std::string::npos)
+      << refused.error().message();
 }
 
 TEST(PublicFaults, AThumbTurnsWithAHandOfTwoBonesInOnePlace) {

@@ -28,6 +28,12 @@ TEST(Needs, ASettingWithoutWhatItNeedsIsNamed) {
   EXPECT_EQ(said_of({{"tone", "1"}}), Said{"--tone has no effect without --behaviour limp"});
   EXPECT_EQ(said_of({{"steps", "2"}, {"behaviour", "limp"}}),
             Said{"--steps has no effect without a body that is alive (--behaviour)"});
+  for (const auto& [name, value] : {std::pair("muscle", "2"), {"breath", "false"}}) {
+    EXPECT_EQ(said_of({{name, value}, {"behaviour", "limp"}}),
+              Said{"--" + std::string(name) +
+                   " has no effect without a body that is alive (--behaviour) or gets up"});
+    EXPECT_EQ(said_of({{name, value}}), Said{});
+  }
 }
 
 TEST(Needs, ASettingWithWhatItNeedsIsNot) {
@@ -49,6 +55,13 @@ TEST(Needs, OfFilesAreThoseOfTheirFormats) {
   settings.outputs = {"a.glb"};
   EXPECT_EQ(idle_settings(settings, SceneKind::ball),
             Said{"--bvh-unit has no effect without a BVH to write"});
+  settings.ground.root_motion = RootMotion::root;
+  EXPECT_EQ(idle_settings(settings, SceneKind::ball).size(), 1u);
+  settings.outputs = {"a.bvh"};
+  EXPECT_EQ(idle_settings(settings, SceneKind::ball).back(),
+            "--root-motion has no effect without a glTF or FBX to write: a BVH has it on the hips");
+  settings.ground.root_motion = RootMotion::in_place;
+  EXPECT_EQ(idle_settings(settings, SceneKind::ball).size(), 1u) << "of a BVH too";
   settings.all_joints = true;
   settings.outputs = {"a.fbx"};
   EXPECT_EQ(idle_settings(settings, SceneKind::ball).front(),
