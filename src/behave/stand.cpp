@@ -33,6 +33,7 @@ constexpr double kAhead_s = 0.004;  // postures are compared over so long
 constexpr double kFastest_s = 0.22;
 constexpr double kSwing_m_s = 2.8, kLongestSwing_s = 0.4;  // of a foot over its way
 
+constexpr double kWellUp = 0.06;       // m: no foot rolls over its toes so high
 constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point so far beyond the feet
 constexpr double kOutOfStride = 1.4;   // the same while a stride that has begun is not at its end
 constexpr double kLongestStep = 1.03;  // of the leg
@@ -197,14 +198,16 @@ void Standing::take_over(const Senses& senses) {
     const auto sooner = [&] { return *lands < *settings_.under_way->lands_in_s[ukemi::index(*first)]; };
     if (!first || (lands && settings_.under_way->lands_in_s[ukemi::index(*first)] && sooner())) first = side;
   }
-  if (!first) return;
-  const View view = view_of(senses);
-  lift(senses, view, *first, false);
+  if (first) go_on(senses, *first, settings_.under_way->lands_in_s[ukemi::index(*first)].value_or(s(0.25)));
+}
+
+/// A foot that is in the air already is taken over with its speed.
+void Standing::go_on(const Senses& senses, BodySide side, double lands_in_s) {
+  lift(senses, view_of(senses), side, false);
   swing_.in_air = true;
-  swing_.from_velocity = ankle_velocity(senses, leg(*first));
-  const auto lands = settings_.under_way->lands_in_s[ukemi::index(*first)];
-  swing_.span_s = std::clamp(lands.value_or(s(0.25)), s(0.12), s(0.45));
-  swing_.to = landing_place(view_of(senses), *first, swing_.span_s);
+  swing_.from_velocity = ankle_velocity(senses, leg(side));
+  swing_.span_s = std::clamp(lands_in_s, s(0.12), s(0.45));
+  swing_.to = landing_place(view_of(senses), side, swing_.span_s);
 }
 
 /// A goal that begins as the motion under way had the joint.
@@ -258,6 +261,9 @@ bool Standing::must_step(const View& view, double time_s) const {
 
 void Standing::stand_on(const Senses& senses, const View& view, double h) {
   const double time_s = senses.time_s;
+  for (const BodySide side : kSides)
+    if (under_way_ && !steps_.empty() && leg(side).lowest_corner(senses) > m(kWellUp))
+      return go_on(senses, side, swing_span(view, side));
   if (must_step(view, time_s)) {
     ready_s_ = 0.0;
     if (time_s < earliest_lift_s()) return;

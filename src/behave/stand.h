@@ -123,6 +123,7 @@ class Standing {
                  double stiffness, double damping_s);
   double active(double time_s) const;
   void take_over(const Senses& senses);
+  void go_on(const Senses& senses, BodySide side, double lands_in_s);
   Vec3 ankle_velocity(const Senses& senses, const Leg& leg) const;
   bool in_air(const Senses& senses, const Leg& leg) const;
   Quat taken_over(const Senses& senses, Joint joint, const Quat& goal, double from_s, double until_s) const;

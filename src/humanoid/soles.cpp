@@ -62,11 +62,18 @@ Soles::Soles(const Character& character, const Humanoid& humanoid) : humanoid_(h
   }
 }
 
-double Soles::lowest(const Skeleton& skeleton, const Pose& pose) const {
+std::array<std::vector<Vec3>, 2> Soles::points(const Skeleton& skeleton, const Pose& pose) const {
   const BodyPose body = segments_of(skeleton, humanoid_, pose);
-  double lowest = 1e300;
+  std::array<std::vector<Vec3>, 2> points = points_;
   for (int side = 0; side < 2; ++side)
-    for (const Vec3& point : points_[side]) lowest = std::min(lowest, (body[index(kFeet[side])] * point).y());
+    for (Vec3& point : points[side]) point = body[index(kFeet[side])] * point;
+  return points;
+}
+
+double Soles::lowest(const Skeleton& skeleton, const Pose& pose) const {
+  double lowest = 1e300;
+  for (const std::vector<Vec3>& foot : points(skeleton, pose))
+    for (const Vec3& point : foot) lowest = std::min(lowest, point.y());
   return lowest;
 }
 

@@ -21,7 +21,9 @@ class Soles {
  public:
   Soles(const Character& character, const Humanoid& humanoid);
 
-  /// The lowest of them in the world, metres.
+  /// Where they are in the world, metres: of the left and the right foot.
+  std::array<std::vector<Vec3>, 2> points(const Skeleton& skeleton, const Pose& pose) const;
+  /// Height of the lowest of them.
   double lowest(const Skeleton& skeleton, const Pose& pose) const;
 
  private:

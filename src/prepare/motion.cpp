@@ -12,6 +12,7 @@
 #include "base/animation.h"
 #include "base/errors.h"
 #include "base/native_rate.h"
+#include "body/on_ground.h"
 #include "clip/names.h"
 #include "clip/start.h"
 #include "humanoid/transfer.h"
@@ -179,6 +180,31 @@ Result<Animation> motion_of_file(const Character& character, const Humanoid& hum
                                clip_label(source->character, *source->clip));
   animation.fps = clip.fps;
   return animation;
+}
+
+Animation going_on(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& clip,
+                   const Vec2& velocity) {
+  std::vector<double> times = key_times(clip);
+  std::vector<Pose> poses;
+  for (double& time_s : times) {
+    const Pose pose = sample(skeleton, clip, clip.start_s + time_s);
+    poses.push_back(moved(skeleton, humanoid, pose, at_height(time_s * velocity, 0.0)));
+    time_s += clip.start_s;
+  }
+  Animation result = clip;
+  for (int i = 0; i < skeleton.size(); ++i) {
+    if (skeleton.nodes[i].parent >= 0) continue;
+    std::erase_if(result.tracks, [&](const Track& track) {
+      return track.node == i && track.path == TrackPath::translation;
+    });
+    Track track{i, TrackPath::translation, Interpolation::linear, times, {}};
+    for (const Pose& pose : poses) {
+      const Vec3& t = pose[i].translation;
+      track.values.insert(track.values.end(), {t.x(), t.y(), t.z()});
+    }
+    result.tracks.push_back(std::move(track));
+  }
+  return result;
 }
 
 Result<Pose> pose_of_file(const Character& character, const Humanoid& humanoid, const std::string& text,

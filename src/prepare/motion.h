@@ -26,4 +26,9 @@ Result<Animation> motion_of_file(const Character& character, const Humanoid& hum
 Result<Pose> pose_of_file(const Character& character, const Humanoid& humanoid, const std::string& text,
                           Diagnostics& diagnostics);
 
+/// The clip with the whole figure going on along the ground at a velocity (forward and right of the world, x
+/// and z, m/s).
+Animation going_on(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& clip,
+                   const Vec2& velocity);
+
 }  // namespace ukemi

@@ -363,6 +363,12 @@ Settings start_settings() {
                      "at", "S", Range{0.0, 86400.0}, "time in the start clip at which the blow lands",
                      [](auto& s) -> auto& { return s.at_s; }),
                  "0"),
+      with_unset(
+          number<S>(
+              "ground-speed", "M_S", Range{0.0, 20.0},
+              "speed over the ground of a start clip that walks or runs on the spot; 0 leaves it there",
+              [](auto& s) -> auto& { return s.ground_speed_m_s; }),
+          "found out from its feet"),
   };
 }
 

@@ -47,6 +47,7 @@ struct BakeSettings {
   std::optional<std::string> pose;  // rest, stand, guard
   std::optional<std::string> clip;  // name of a clip of the file
   std::optional<double> at_s;
+  std::optional<double> ground_speed_m_s;  // of a clip that walks on the spot; unless given: found out
   // behaviour
   std::optional<Behaviour> behaviour;  // unless given: alert, limp with fixed steps
   double most_steps = 6;               // of a recovery

@@ -13,6 +13,7 @@
 #include "clip/ground_motion.h"
 #include "clip/names.h"
 #include "clip/start.h"
+#include "prepare/in_place.h"
 #include "prepare/motion.h"
 #include "prepare/settings.h"
 
@@ -164,11 +165,36 @@ std::optional<Rigid> round_of(const Skeleton& skeleton, const Humanoid& humanoid
   return move * Rigid{};
 }
 
-Result<Start> start_from_motion(const Character& character, const Humanoid& humanoid, Animation motion,
-                                double at_s, Diagnostics& diagnostics) {
+/// A clip that walks on the spot is made to go over the ground, as the figure does in the game.
+void make_it_go(const Character& character, const Humanoid& humanoid, const BakeSettings& settings,
+                Animation& motion, Diagnostics& diagnostics) {
+  if (settings.ground_speed_m_s == 0.0) return;
+  const auto velocity = gait_in_place(character, humanoid, motion);
+  if (!velocity) {
+    if (settings.ground_speed_m_s)
+      diagnostics.warn(motion.name,
+                       "--ground-speed has no effect: the clip does not walk or run on the spot");
+    return;
+  }
+  const double speed = settings.ground_speed_m_s.value_or(velocity->norm());
+  if (!settings.ground_speed_m_s)
+    diagnostics.warn(
+        motion.name,
+        fmt::format("walks or runs on the spot: taken to go at {:.2f} m/s, as its feet slide back; "
+                    "--ground-speed sets it, 0 leaves it on the spot",
+                    speed));
+  const std::string name = motion.name;
+  motion = going_on(character.skeleton, humanoid, motion, speed * velocity->normalized());
+  motion.name = name;
+}
+
+Result<Start> start_from_motion(const Character& character, const Humanoid& humanoid,
+                                const BakeSettings& settings, Animation motion, Diagnostics& diagnostics) {
+  const double at_s = settings.at_s.value_or(0.0);
   if (!(at_s >= 0.0) || at_s > motion.duration_s() + 1e-6)
     return usage_error(fmt::format("--at {} lies outside the clip '{}'", at_s, motion.name),
                        fmt::format("give a time from 0 to {:.3f} s", motion.duration_s()));
+  make_it_go(character, humanoid, settings, motion, diagnostics);
   Start start;
   start.name = motion.name;
   start.from_clip = true;
@@ -190,8 +216,7 @@ Result<Start> start_of(const Character& character, const Humanoid& humanoid, con
   if (!motion) return motion.error();
   Start start;
   if (*motion) {
-    auto from_motion =
-        start_from_motion(character, humanoid, std::move(**motion), settings.at_s.value_or(0.0), diagnostics);
+    auto from_motion = start_from_motion(character, humanoid, settings, std::move(**motion), diagnostics);
     if (!from_motion) return from_motion.error();
     start = std::move(*from_motion);
   } else {

@@ -137,6 +137,59 @@ TEST(Start, SegmentsOfTheSimulationStandAboveItsFloor) {
                 1e-12);
 }
 
+TEST(Start, TheFloorIsThatOfTheStrideWhereACapturedFloorDrifts) {
+  Walk walk;
+  Track& root = walk.root_track();
+  const double early = walk.start(0.1).floor_m;
+  const double late = walk.start(0.95).floor_m;
+  for (std::size_t i = 0; i < root.times.size(); ++i) root.values[3 * i + 1] += 4.0 * root.times[i];
+  const double rise = walk.start(0.95).floor_m - late - (walk.start(0.1).floor_m - early);
+  EXPECT_GT(rise, 0.008) << "4 cm a second";
+  EXPECT_LT(rise, 0.04);
+}
+
+/// Takes what the hips travel out of the walk; returns how fast they went, m/s.
+double put_on_the_spot(Walk& walk) {
+  Track& root = walk.root_track();
+  const std::size_t last = root.times.size() - 1;
+  const double way = root.values[3 * last + 2] - root.values[2];
+  const double speed = way / (root.times[last] - root.times[0]);
+  for (std::size_t i = 0; i <= last; ++i) root.values[3 * i + 2] -= speed * (root.times[i] - root.times[0]);
+  return 0.01 * speed;
+}
+
+double pelvis_speed(const Start& start) { return start.state.linear_velocity[index(Segment::pelvis)].z(); }
+
+TEST(Start, AWalkOnTheSpotGoesAsFastAsItsFeetSlideBack) {
+  Walk walk;
+  const double as_it_was = pelvis_speed(walk.start(0.5));
+  EXPECT_TRUE(walk.diagnostics.warnings().empty());
+  const double speed = put_on_the_spot(walk);
+  ASSERT_GT(speed, 0.8);
+  EXPECT_NEAR(pelvis_speed(walk.start(0.5)), as_it_was, 0.1 * speed);
+  ASSERT_EQ(walk.diagnostics.warnings().size(), 1u);
+  EXPECT_NE(walk.diagnostics.warnings()[0].what.find("--ground-speed"), std::string::npos);
+}
+
+TEST(Start, TheSpeedOfAWalkOnTheSpotIsAsSaid) {
+  Walk walk;
+  const double speed = put_on_the_spot(walk);
+  walk.settings.ground_speed_m_s = 0.0;
+  const double on_the_spot = pelvis_speed(walk.start(0.5));
+  EXPECT_LT(std::abs(on_the_spot), 0.3 * speed);
+  walk.settings.ground_speed_m_s = 2.0;
+  EXPECT_NEAR(pelvis_speed(walk.start(0.5)) - on_the_spot, 2.0, 0.02);
+  EXPECT_TRUE(walk.diagnostics.warnings().empty()) << "nothing was guessed";
+}
+
+TEST(Start, TheSpeedOfAWalkThatGoesItselfIsNotChangedWithoutAWord) {
+  Walk walk;
+  const double speed = pelvis_speed(walk.start(0.5));
+  walk.settings.ground_speed_m_s = 2.0;
+  EXPECT_EQ(pelvis_speed(walk.start(0.5)), speed);
+  EXPECT_EQ(walk.diagnostics.warnings().size(), 1u);
+}
+
 TEST(Report, NamesAReactionByTargetAndDirection) {
   BakeSettings settings;
   settings.hit = Segment::head;
