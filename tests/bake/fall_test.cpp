@@ -136,6 +136,24 @@ TEST(Walk, StopsFromAnyPhaseOfTheStrideWithoutABlow) {
   }
 }
 
+TEST(Walk, AModerateBlowIsWalkedOff) {
+  int up = 0;
+  for (const double at_s : {0.1, 0.278, 0.456, 0.633, 0.811, 0.989})
+    for (const char* from : {"front", "left", "back", "right"}) {
+      BakeSettings settings;
+      settings.scene = SceneKind::impulse;
+      settings.ball_mass_kg = 1.0;
+      settings.ball_speed_m_s = 20.0;
+      settings.from = *parse_direction(from);
+      settings.clip = "walk";
+      settings.at_s = at_s;
+      const BakedClip clip = baked(settings);
+      up += clip.behaviour.fall_begins_s ? 0 : 1;
+      EXPECT_EQ(clip.limits.over_1deg, 0) << at_s << from;
+    }
+  EXPECT_GE(up, 23) << "of 24";
+}
+
 TEST(Supine, NoHandStaysUpInTheAir) {
   int supine = 0;
   for (const char* from : {"front", "left", "right", "315"}) {
