@@ -6,7 +6,7 @@
 namespace ukemi {
 
 /// What a clip goes back to: the start pose, or what the start clip plays by then.
-enum class RecoverTo { rest, clip };
+enum class RecoverTo { stance, rest, clip };  // stance: not at all, he stays as he stands
 
 /// Blends from the last frame, with its velocities, to `to` in `seconds` (rounded up to whole frames).
 /// The figure recovers where it stands and keeps its feet; at the end of a clip it is where it would be

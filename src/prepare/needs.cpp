@@ -64,7 +64,11 @@ const std::vector<Need>& needs() {
        "the active restriction (--active)",
        [](const Given& g) { return g.settings.simulation.active != Active::off; }},
       {{"hold"}, "--until-rest", [](const Given& g) { return g.settings.until_rest; }},
-      {{"to"}, "--recover", [](const Given& g) { return g.settings.recover_s.has_value(); }},
+      {{"to"},
+       "--recover",
+       [](const Given& g) {
+         return g.settings.recover_s.has_value() || g.settings.recover_to == RecoverTo::stance;
+       }},
       {{"extra-bones", "ground-speed"},
        "a start --clip",
        [](const Given& g) { return g.settings.clip.has_value(); }},

@@ -106,6 +106,9 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
   auto start = start_of(character, prepared.humanoid, settings, diagnostics);
   if (!start) return start.error();
   prepared.start = std::move(*start);
+  if (settings.recover_s && settings.recover_to == RecoverTo::stance)
+    return usage_error("--to stance and --recover exclude each other",
+                       "leave --recover away to end as he stands, or take --to rest");
   if (settings.recover_s && settings.recover_to == RecoverTo::clip && !prepared.start.motion)
     return usage_error("--to clip needs a start clip to go back to", "add --clip NAME, or take --to rest");
   auto body = build_body(character, prepared.humanoid, prepared.start.pose, prepared.start.segments,

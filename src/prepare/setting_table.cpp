@@ -568,9 +568,9 @@ Settings clip_settings() {
                      [](auto& s) -> auto& { return s.recover_s; }),
                  "none"),
       choice<S, RecoverTo>(
-          "to", {{"rest", RecoverTo::rest}, {"clip", RecoverTo::clip}},
+          "to", {{"stance", RecoverTo::stance}, {"rest", RecoverTo::rest}, {"clip", RecoverTo::clip}},
           "where --return leads: the start pose, or what the start clip plays by then (a cycle goes round "
-          "and round)",
+          "and round); stance, without --return: he stays as he came to stand",
           [](auto& s) -> auto& { return s.recover_to; }),
       choice<S, RootMotion>(
           "root-motion",

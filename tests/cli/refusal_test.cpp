@@ -60,6 +60,8 @@ TEST_F(Refusal, OfUnknownWords) {
 }
 
 TEST_F(Refusal, OfClipSettingsThatDoNotGoTogether) {
+  expect_refused({"bake", "mannequin", "-o", "a.glb", "--recover", "0.5", "--to", "stance"}, kMustChange,
+                 "exclude each other");
   expect_refused({"bake", "mannequin", "-o", "a.glb", "--recover", "0.5", "--to", "clip"}, kMustChange,
                  "--to clip needs a start clip");
   expect_refused({"bake", "mannequin", "-o", "a.bvh", "--additive", "rest"}, kMustChange, "--additive is for glTF");
