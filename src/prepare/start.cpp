@@ -183,9 +183,7 @@ void make_it_go(const Character& character, const Humanoid& humanoid, const Bake
         fmt::format("walks or runs on the spot: taken to go at {:.2f} m/s, as its feet slide back; "
                     "--ground-speed sets it, 0 leaves it on the spot",
                     speed));
-  const std::string name = motion.name;
   motion = going_on(character.skeleton, humanoid, motion, speed * velocity->normalized());
-  motion.name = name;
 }
 
 Result<Start> start_from_motion(const Character& character, const Humanoid& humanoid,
