@@ -122,6 +122,16 @@ TEST(FirstContacts, OfWhoStandsAreNone) {
   EXPECT_FALSE(mark(clip, "hand_contact"));
 }
 
+/// A blow of so many N s to the chest, given at once.
+BakeSettings impulse(double n_s, const char* from) {
+  BakeSettings settings;
+  settings.scene = SceneKind::impulse;
+  settings.ball_mass_kg = 1.0;
+  settings.ball_speed_m_s = n_s;
+  settings.from = *parse_direction(from);
+  return settings;
+}
+
 TEST(Walk, StopsFromAnyPhaseOfTheStrideWithoutABlow) {
   for (const double at_s : {0.1, 0.28, 0.46, 0.64, 0.81, 0.99}) {
     BakeSettings settings;
@@ -140,11 +150,7 @@ TEST(Walk, AModerateBlowIsWalkedOff) {
   int up = 0;
   for (const double at_s : {0.1, 0.278, 0.456, 0.633, 0.811, 0.989})
     for (const char* from : {"front", "left", "back", "right"}) {
-      BakeSettings settings;
-      settings.scene = SceneKind::impulse;
-      settings.ball_mass_kg = 1.0;
-      settings.ball_speed_m_s = 20.0;
-      settings.from = *parse_direction(from);
+      BakeSettings settings = impulse(20.0, from);
       settings.clip = "walk";
       settings.at_s = at_s;
       const BakedClip clip = baked(settings);
@@ -157,12 +163,7 @@ TEST(Walk, AModerateBlowIsWalkedOff) {
 TEST(Supine, NoHandStaysUpInTheAir) {
   int supine = 0;
   for (const char* from : {"front", "left", "right", "315"}) {
-    BakeSettings settings;
-    settings.scene = SceneKind::impulse;
-    settings.ball_mass_kg = 1.0;
-    settings.ball_speed_m_s = 90.0;
-    settings.from = *parse_direction(from);
-    const BakedClip clip = baked(settings);
+    const BakedClip clip = baked(impulse(90.0, from));
     if (response_of(clip).end_pose != EndPose::supine) continue;
     ++supine;
     for (const Segment hand : {Segment::hand_l, Segment::hand_r})

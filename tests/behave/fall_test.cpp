@@ -205,21 +205,29 @@ TEST(Falling, brakes_with_the_legs_to_the_side_more_than_to_the_front) {
   EXPECT_GT(stiffness(90.0), 2.0 * stiffness(0.0));
 }
 
-TEST(Falling, over_the_knees_stretches_the_hips_and_lets_the_knees_go) {
-  const Faller faller;
-  Falling falling({}, faller.man.body, faller.man.range, faller.strength);
+/// From its start on; what it senses may be changed on the way.
+struct ForwardFall {
+  Faller faller;
+  Falling falling{{}, faller.man.body, faller.man.range, faller.strength};
   Senses senses = tipped(faller, 0.7, 0.0, 1.5);
-  falling.start(senses);
-  falling.begin(senses, at_once(0.0));
-  const auto after = [&](double until_s) {
+
+  ForwardFall() {
+    falling.start(senses);
+    falling.begin(senses, at_once(0.0));
+  }
+  Goals after(double until_s) {
     for (; senses.time_s < until_s; senses.time_s += 0.01) falling.observe(senses, 0.01);
     Goals goals;
     falling.drive(senses.time_s, goals);
     return goals;
-  };
-  const Goals before = after(0.4);
-  senses.contacts.push_back(test::touches_floor(senses, Segment::shank_l));
-  const Goals kneeling = after(0.7);
+  }
+};
+
+TEST(Falling, over_the_knees_stretches_the_hips_and_lets_the_knees_go) {
+  ForwardFall fall;
+  const Goals before = fall.after(0.4);
+  fall.senses.contacts.push_back(test::touches_floor(fall.senses, Segment::shank_l));
+  const Goals kneeling = fall.after(0.7);
   const auto hip = [](const Goals& goals) {
     return log_rotation(goals.joints[index(Joint::hip_l)][0].parent_from_child).z();
   };
@@ -232,19 +240,12 @@ TEST(Falling, over_the_knees_stretches_the_hips_and_lets_the_knees_go) {
 }
 
 TEST(Falling, lays_its_arms_down_within_six_tenths_of_a_second_on_the_belly) {
-  const Faller faller;
-  Falling falling({}, faller.man.body, faller.man.range, faller.strength);
-  Senses senses = tipped(faller, 0.7, 0.0, 1.5);
-  falling.start(senses);
-  falling.begin(senses, at_once(0.0));
+  ForwardFall fall;
   const auto shoulder_at = [&](double until_s) {
-    for (; senses.time_s < until_s; senses.time_s += 0.01) falling.observe(senses, 0.01);
-    Goals goals;
-    falling.drive(senses.time_s, goals);
-    return goals.joints[index(Joint::shoulder_l)][0].parent_from_child;
+    return fall.after(until_s).joints[index(Joint::shoulder_l)][0].parent_from_child;
   };
   shoulder_at(0.4);
-  senses.contacts.push_back(test::touches_floor(senses, Segment::chest));
+  fall.senses.contacts.push_back(test::touches_floor(fall.senses, Segment::chest));
   const Quat landing = shoulder_at(0.42), soon = shoulder_at(1.0), at_last = shoulder_at(2.0);
   EXPECT_GT(angle_between(landing, at_last), radians(20.0));
   EXPECT_LT(angle_between(soon, at_last), radians(2.0));
