@@ -8,8 +8,6 @@ namespace {
 
 constexpr std::array<Segment, 2> kFeet = {Segment::foot_l, Segment::foot_r};
 constexpr double kBall = 0.72;  // of the foot's length, from the heel (Hawes & Sovak 1994)
-// Ankle centre above the sole (de Leva 1996) and toe joint above it, heights.
-constexpr double kAnkle = 0.039, kToeJoint = 0.012;
 
 /// From the skin around the foot; none where there is no skin, or a wrong bind pose.
 std::vector<Vec3> points_of_skin(const Character& character, const Humanoid& humanoid, Segment foot) {
@@ -30,12 +28,12 @@ std::vector<Vec3> points_of_skin(const Character& character, const Humanoid& hum
 }
 
 std::vector<Vec3> points_of_bones(const Character& character, const Humanoid& humanoid, int side) {
-  std::vector<Vec3> points = {Vec3(0.0, -kAnkle * humanoid.height_m, 0.0)};
+  std::vector<Vec3> points = {Vec3(0.0, -kAnkleUp * humanoid.height_m, 0.0)};
   if (humanoid.toes[side] < 0) return points;
   const Rigid frame = segments_of(character.skeleton, humanoid, humanoid.reference)[index(kFeet[side])];
   const std::vector<Affine> nodes = world_transforms(character.skeleton, humanoid.reference);
   const Vec3 toe = frame.inverse() * (humanoid.world_from_file * nodes[humanoid.toes[side]].translation());
-  points.push_back(toe - kToeJoint * humanoid.height_m * Vec3::UnitY());
+  points.push_back(toe - kToeJointUp * humanoid.height_m * Vec3::UnitY());
   return points;
 }
 

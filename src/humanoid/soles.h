@@ -16,6 +16,9 @@ SkinExtent extent_of_feet(const Character& character, const Humanoid& humanoid, 
 /// Farther from the ankle, in heights, than any shoe.
 inline constexpr double kFarSole = 0.4;
 
+/// Ankle centre (de Leva 1996) and toe joint above the sole, in heights: where there is no skin to see it.
+inline constexpr double kAnkleUp = 0.039, kToeJointUp = 0.012;
+
 /// Heels and balls of the feet. Toes bend, also where a rig has none: they do not count.
 class Soles {
  public:

@@ -244,12 +244,11 @@ double lowest_sole(const Character& character, const Humanoid& humanoid, const P
   if (extent.found && near_feet) return sole;
   double lowest = 1e300;
   for (int side = 0; side < 2; ++side) {
-    // Ankle centre 0.039 of the height above the sole (de Leva 1996), toe joint about 0.012.
     const Segment foot = side == 0 ? Segment::foot_l : Segment::foot_r;
-    lowest = std::min(lowest, body[index(foot)].translation.y() - 0.039 * humanoid.height_m);
+    lowest = std::min(lowest, body[index(foot)].translation.y() - kAnkleUp * humanoid.height_m);
     if (humanoid.toes[side] >= 0)
       lowest = std::min(lowest, (humanoid.world_from_file * world[humanoid.toes[side]].translation()).y() -
-                                    0.012 * humanoid.height_m);
+                                    kToeJointUp * humanoid.height_m);
   }
   return lowest;
 }
