@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace ukemi {
 namespace {
@@ -29,22 +30,21 @@ JointGoal weakened(JointGoal goal, double share) {
   return goal;
 }
 
-Alert::Alert(const ArticulatedBody& body, const RangeOfMotion& range, const MuscleStrength& strength,
-             const BodyPose& home, double gravity, const StandSettings& standing, const FallSettings& falling,
-             bool must_stand)
-    : standing_(body, home, gravity, standing),
+Alert::Alert(std::unique_ptr<OnFeet> on_feet, const ArticulatedBody& body, const RangeOfMotion& range,
+             const MuscleStrength& strength, const FallSettings& falling, bool must_stand)
+    : on_feet_(std::move(on_feet)),
       falling_(falling, body, range, strength),
-      tempo_(standing_.physique().tempo),
+      tempo_(on_feet_->physique().tempo),
       must_stand_(must_stand) {}
 
 void Alert::start(const Senses& senses) {
-  standing_.start(senses);
+  on_feet_->start(senses);
   falling_.start(senses);
 }
 
 void Alert::observe(const Senses& senses, double h) {
   time_s_ = senses.time_s;
-  if (!over_) standing_.observe(senses, h);
+  if (!over_) on_feet_->observe(senses, h);
   if (falling_.begun()) {
     release_swinging_leg(senses);
     falling_.observe(senses, h);
@@ -52,14 +52,14 @@ void Alert::observe(const Senses& senses, double h) {
     return;
   }
   falling_.watch(senses, h);
-  if (standing_.lost_s() && time_s_ >= *standing_.lost_s() + kHandOver_s * tempo_) begin_fall(senses);
+  if (on_feet_->lost_s() && time_s_ >= *on_feet_->lost_s() + kHandOver_s * tempo_) begin_fall(senses);
 }
 
 /// A leg in the air goes on as it was until its foot is down.
 void Alert::begin_fall(const Senses& senses) {
   PerJoint<double> from_s;
   from_s.fill(senses.time_s);
-  swinging_ = standing_.swinging();
+  swinging_ = on_feet_->swinging();
   if (swinging_)
     for (const Joint joint : {Joint::hip_r, Joint::knee_r, Joint::ankle_r})
       from_s[index(on(*swinging_, joint))] = std::numeric_limits<double>::infinity();
@@ -68,15 +68,15 @@ void Alert::begin_fall(const Senses& senses) {
 
 void Alert::release_swinging_leg(const Senses& senses) {
   if (!swinging_) return;
-  const bool down = standing_.swinging() != swinging_ || beyond_feet(senses);
-  if (!down && senses.time_s < *standing_.lost_s() + kLongestSwing_s * tempo_) return;
+  const bool down = on_feet_->swinging() != swinging_ || beyond_feet(senses);
+  if (!down && senses.time_s < *on_feet_->lost_s() + kLongestSwing_s * tempo_) return;
   for (const Joint joint : {Joint::hip_r, Joint::knee_r, Joint::ankle_r})
     falling_.fade_in(on(*swinging_, joint), senses.time_s);
   swinging_.reset();
 }
 
 bool Alert::has_stepped() const {
-  const std::vector<StepTaken>& steps = standing_.steps();
+  const std::vector<StepTaken>& steps = on_feet_->steps();
   return std::any_of(steps.begin(), steps.end(),
                      [](const StepTaken& step) { return step.contact_s.has_value(); });
 }
@@ -90,7 +90,7 @@ bool Alert::standing_over(double time_s) const {
 void Alert::drive(double time_s, Goals& goals) const {
   if (!over_) {
     Goals standing;
-    standing_.drive(standing);
+    on_feet_->drive(standing);
     for (int j = 0; j < kJointCount; ++j) {
       const double share = 1.0 - falling_.faded(joint_at(j), time_s);
       for (const JointGoal& goal : standing.joints[j])
@@ -104,15 +104,16 @@ void Alert::drive(double time_s, Goals& goals) const {
 
 bool Alert::done() const {
   if (falling_.begun()) return falling_.done();
-  return !standing_.lost_s() && time_s_ > kLeastStand_s && standing_.calm();
+  return !on_feet_->lost_s() && time_s_ > kLeastStand_s && on_feet_->calm();
 }
 
 ControllerReport Alert::report() const {
   ControllerReport report = falling_.report();
-  report.steps = standing_.steps();
-  report.fall_begins_s = standing_.lost_s();
-  if (standing_.lost_s())
-    report.events.insert(report.events.begin(), {"lost: " + standing_.lost_why(), *standing_.lost_s()});
+  report.steps = on_feet_->steps();
+  report.fall_begins_s = on_feet_->lost_s();
+  report.goes_on_from_s = on_feet_->goes_on_from_s();
+  if (on_feet_->lost_s())
+    report.events.insert(report.events.begin(), {"lost: " + on_feet_->lost_why(), *on_feet_->lost_s()});
   return report;
 }
 

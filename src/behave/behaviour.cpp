@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "behave/alert.h"
+#include "behave/stride.h"
 #include "behave/tone.h"
 
 namespace ukemi {
@@ -92,10 +93,19 @@ MakeController behaviour_of(const ArticulatedBody& body, const RangeOfMotion& ra
   fall.arms_free = behaviour.arms_free;
   fall.seed = behaviour.seed;
   fall.breathes = behaviour.breathes;
+  std::shared_ptr<const Gait> gait;
+  if (behaviour.goes_on)
+    gait = std::make_shared<Gait>(body, PerSide<Leg>{Leg(body, home, BodySide::left), Leg(body, home, BodySide::right)},
+                                  *behaviour.goes_on, behaviour.gait_step_s, settings.gravity);
   return [&body, &range, &strength, &home, stand, fall, gravity = settings.gravity,
           tone = ToneSettings{tone_of(settings), settings.tone_fade_s}, knockout = behaviour.knockout,
-          must_stand = behaviour.must_stand]() -> std::unique_ptr<Controller> {
-    auto alive = std::make_unique<Alert>(body, range, strength, home, gravity, stand, fall, must_stand);
+          must_stand = behaviour.must_stand, gait]() -> std::unique_ptr<Controller> {
+    std::unique_ptr<OnFeet> on_feet;
+    if (gait)
+      on_feet = std::make_unique<Striding>(body, home, strength, gravity, stand, gait);
+    else
+      on_feet = std::make_unique<Standing>(body, home, gravity, stand);
+    auto alive = std::make_unique<Alert>(std::move(on_feet), body, range, strength, fall, must_stand);
     if (!knockout) return alive;
     return std::make_unique<KnockedOut>(std::move(alive), body, *knockout, tone);
   };

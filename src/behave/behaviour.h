@@ -1,6 +1,9 @@
 // What a body does after the blow: lives, is dazed, or is limp.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "behave/knocked_out.h"
 #include "behave/stand.h"
 #include "body/muscles.h"
@@ -33,6 +36,10 @@ struct BehaviourSettings {
   std::uint64_t seed = 0;           // varies latency, arms and steps; 0: none
   PerSide<bool> arms_free{true, true};
   std::optional<UnderWay> under_way;  // a start from motion
+  /// It goes on with the motion that it started from: its poses above a floor at y = 0 from the blow on,
+  /// `gait_step_s` apart; null: it comes to stand.
+  std::shared_ptr<const std::vector<BodyPose>> goes_on;
+  double gait_step_s = 1.0 / 120.0;
   Choice choice;
   std::optional<Knockout> knockout;  // lives until then; not of a limp body
   bool breathes = true;              // once it lies

@@ -190,6 +190,7 @@ bool Standing::in_air(const Senses& senses, const Leg& leg) const {
 /// The start of a body under way: a foot in the air goes on with its step.
 void Standing::take_over(const Senses& senses) {
   under_way_ = senses.pose;
+  begun_s_ = senses.time_s;
   for (const BodySide side : kSides) points_[ukemi::index(side)] = leg(side).yaw(senses);
   std::optional<BodySide> first;
   for (const BodySide side : kSides) {
@@ -216,7 +217,7 @@ Quat Standing::taken_over(const Senses& senses, Joint joint, const Quat& goal, d
   if (!under_way_) return goal;
   const Quat was = (*under_way_)[ukemi::index(parent_of(joint))].rotation.conjugate() *
                    (*under_way_)[ukemi::index(child_of(joint))].rotation;
-  return was.slerp(min_jerk((senses.time_s - s(from_s)) / s(until_s - from_s)), goal);
+  return was.slerp(min_jerk((senses.time_s - begun_s_ - s(from_s)) / s(until_s - from_s)), goal);
 }
 
 void Standing::observe(const Senses& senses, double h) {
@@ -237,7 +238,7 @@ void Standing::drive(Goals& goals) const {
 // ---- the state machine
 
 void Standing::choose(const Senses& senses, const View& view, double h) {
-  if (lost_s_) {
+  if (lost_s()) {
     if (phase_ == Phase::swing) swing_on(senses, view);
     return;
   }
@@ -268,7 +269,7 @@ void Standing::stand_on(const Senses& senses, const View& view, double h) {
     ready_s_ = 0.0;
     if (time_s < earliest_lift_s()) return;
     if (steps_in_a_row_ >= settings_.most_steps) {
-      if (settings_.most_steps > 0) lost_s_ = time_s, lost_why_ = "steps";
+      if (settings_.most_steps > 0) lose(time_s, "steps");
       return;
     }
     return lift(senses, view, stepping_foot(view), false);
@@ -442,7 +443,7 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
     steps_in_a_row_ = 0;
     closings_ = 0;
   }
-  if (lost_s_ || active(senses.time_s) <= 0.0) return;
+  if (lost_s() || active(senses.time_s) <= 0.0) return;
   const bool first_stride = under_way_ && phase_ == Phase::swing && steps_.size() == 1;
   const double reach = settings_.most_steps == 0
                            ? m(0.25)
@@ -462,9 +463,7 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
                     : tilt < 0.5                            ? "tilt"
                     : touches                               ? "touch"
                                                             : nullptr;
-  if (why == nullptr) return;
-  lost_s_ = senses.time_s;
-  lost_why_ = why;
+  if (why != nullptr) lose(senses.time_s, why);
 }
 
 // ---- what is asked of the muscles
@@ -741,7 +740,7 @@ void Standing::ask_upper_body(const Senses& senses) {
 /// What takes the capture point back to the feet, or what pushes a body over that would stand.
 Vec3 Standing::help_of(const View& view) const {
   const Help& help = settings_.help;
-  if (help.most_n <= 0.0 || lost_s_) return Vec3::Zero();
+  if (help.most_n <= 0.0 || lost_s()) return Vec3::Zero();
   if (help.down) return at_height(help.most_n * on_ground(settings_.flinch.way).normalized(), 0.0);
   const Vec2 back = into(view.inner, view.icp) - view.icp;
   Vec2 force = kHelp * physique_.mass_kg * view.rate * view.rate * back;

@@ -11,6 +11,7 @@
 
 #include "behave/flinch.h"
 #include "behave/legs.h"
+#include "behave/on_feet.h"
 #include "behave/physique.h"
 #include "simulate/controller.h"
 
@@ -46,23 +47,19 @@ struct StandSettings {
   FlinchSettings flinch;
 };
 
-class Standing {
+class Standing : public OnFeet {
  public:
   /// `home`: the pose that is stood in: feet, height, joint angles.
   Standing(const ArticulatedBody& body, const BodyPose& home, double gravity, const StandSettings& settings);
 
-  void start(const Senses& senses);
-  void observe(const Senses& senses, double h);
-  void drive(Goals& goals) const;
+  void start(const Senses& senses) override;
+  void observe(const Senses& senses, double h) override;
+  void drive(Goals& goals) const override;
 
-  /// Why and when balance was lost: what follows is a fall.
-  const std::optional<double>& lost_s() const { return lost_s_; }
-  const std::string& lost_why() const { return lost_why_; }
-  bool calm() const { return calm_s_ > 0.0; }
-  const std::vector<StepTaken>& steps() const { return steps_; }
-  /// The leg that is in the air.
-  std::optional<BodySide> swinging() const;
-  const Physique& physique() const { return physique_; }
+  bool calm() const override { return calm_s_ > 0.0; }
+  const std::vector<StepTaken>& steps() const override { return steps_; }
+  std::optional<BodySide> swinging() const override;
+  const Physique& physique() const override { return physique_; }
 
  private:
   enum class Phase { stand, shift, swing };
@@ -135,6 +132,7 @@ class Standing {
   PerSide<Leg> legs_;
   BodyPose home_;
   std::optional<BodyPose> under_way_;  // pose at the start of a body under way
+  double begun_s_ = 0.0;
   Flinch flinch_;
   PerSide<Vec2> home_sole_;
   Vec2 home_com_ = Vec2::Zero();  // from the middle of the soles
@@ -156,8 +154,6 @@ class Standing {
   double pelvis_y_ = 0.0;      // wanted
   double arms_up_ = 0.0;       // 0 to 1
   std::vector<StepTaken> steps_;
-  std::optional<double> lost_s_;
-  std::string lost_why_;
   Goals asked_;
 };
 

@@ -68,6 +68,20 @@ UnderWay under_way_of(const Character& character, const Prepared& prepared) {
   return under_way;
 }
 
+/// Poses of the start's motion from the blow on.
+void go_on(const Character& character, const BakeSettings& settings, Prepared& prepared) {
+  constexpr double kBeyond_s = 1.0;  // what follows the run still tells where feet land
+  const double step_s = prepared.behaviour.gait_step_s;
+  auto frames = std::make_shared<std::vector<BodyPose>>();
+  for (int i = 0; i * step_s < simulated_s(settings) + kBeyond_s; ++i) {
+    const Pose pose = unhit_pose(character.skeleton, prepared.humanoid, prepared.start, i * step_s);
+    BodyPose segments = canonical_segments_of(character.skeleton, prepared.humanoid, pose);
+    for (Rigid& segment : segments) segment.translation.y() -= prepared.start.floor_m;
+    frames->push_back(segments);
+  }
+  prepared.behaviour.goes_on = std::move(frames);
+}
+
 /// A still start is its own home. A body under way comes to stand as the stand pose does, facing as it does
 /// then.
 void find_home(const Character& character, const BakeSettings& settings, Prepared& prepared) {
@@ -89,6 +103,7 @@ void find_home(const Character& character, const BakeSettings& settings, Prepare
     segment = {turned * segment.rotation, to + turned * (segment.translation - from)};
   prepared.home = stand;
   prepared.behaviour.under_way = under_way_of(character, prepared);
+  if (settings.recover_to == RecoverTo::clip) go_on(character, settings, prepared);
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ struct ControllerReport {
   std::optional<double> knocked_out_s;  // from then on nobody was there
   std::vector<BehaviourEvent> events;
   FallReport fall;
+  /// It goes on as it did before the blow, since the end of the run: the moment of that motion, s from the blow.
+  std::optional<double> goes_on_from_s;
 };
 
 /// A behaviour. Its state changes in start() and observe() alone, so that a rejected step needs no undo.
@@ -70,6 +72,8 @@ class Controller {
   virtual bool done() const { return true; }
   /// Nothing that follows is of interest: the run ends at once.
   virtual bool hopeless() const { return false; }
+  /// What follows is known: the run ends at once.
+  virtual bool over() const { return false; }
   virtual ControllerReport report() const { return {}; }
 };
 

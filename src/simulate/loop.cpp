@@ -187,7 +187,7 @@ void Simulation::run(Diagnostics& diagnostics) {
 }
 
 bool Simulation::ended() const {
-  if (controller_ && controller_->hopeless()) return true;
+  if (controller_ && (controller_->hopeless() || controller_->over())) return true;
   const bool at_rest = rest_.since_s() && (!controller_ || controller_->done());
   return at_rest && settings_.stop_at_rest && stepping_.adaptive;
 }

@@ -42,8 +42,9 @@ TEST(Tone, FadesSmoothlyInItsTime) {
 double stiffness_at(double time_s) {
   const test::Faller faller;
   const ArticulatedBody& body = faller.man.body;
-  auto alive = std::make_unique<Alert>(body, faller.man.range, faller.strength, faller.man.segments, 9.81,
-                                       StandSettings{}, FallSettings::alert(), false);
+  auto standing = std::make_unique<Standing>(body, faller.man.segments, 9.81, StandSettings{});
+  auto alive = std::make_unique<Alert>(std::move(standing), body, faller.man.range, faller.strength,
+                                       FallSettings::alert());
   KnockedOut man(std::move(alive), body, {Knockout::At::time, 0.5}, {0.3, 0.6});
   Senses senses = faller.senses(Vec3::Zero(), Vec3::Zero());
   man.start(senses);
