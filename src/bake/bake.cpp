@@ -188,7 +188,7 @@ void make_keys(const Character& character, const SegmentFrames& frames, const Ex
   if (settings.all_joints) reduction.joints = joints_of_skins(character);
   baked.reduced =
       reduce_keys(skeleton, exported.clip, exported.humanoid.world_from_file, reduction,
-                  [&](std::size_t frame, const Pose& reduced) { return keeper.too_far(frame, reduced); });
+                  [&](std::size_t frame, const Pose& reduced) { return keeper.to_mend(frame, reduced); });
   const Animation animation{baked.reduced.name, 0.0, exported.clip.duration_s(), exported.clip.fps,
                             baked.reduced.tracks};
   std::vector<Pose> poses;
