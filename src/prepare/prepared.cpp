@@ -128,6 +128,7 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
   if (!scene) return scene.error();
   prepared.scene = *scene;
   for (const std::string& idle : idle_settings(settings, prepared.scene.kind)) diagnostics.warn("", idle);
+  for (const std::string& idle : idle_settings(settings, character)) diagnostics.warn("", idle);
   return prepared;
 }
 

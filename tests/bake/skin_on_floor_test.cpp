@@ -88,6 +88,15 @@ TEST(SkinOnFloor, DeepSkinIsLiftedAsFastAsItIsDeep) {
   EXPECT_EQ(all[0], 0.0);
 }
 
+TEST(SkinOnFloor, SkinThatSinksRightAfterTheStartIsLiftedAsFast) {
+  std::vector<double> depth(60, 0.0);
+  for (int i = 0; i < 8; ++i) depth[i] = 0.009 * i;  // a tail that swings into the floor at 0.54 m/s
+  const std::vector<double> up = lifts(depth, 0.009, 0.25, 60.0);
+  EXPECT_EQ(up[0], 0.0);
+  for (int i = 0; i < 60; ++i) EXPECT_LT(depth[i] - up[i], 0.0191) << i;
+  for (int i = 1; i < 60; ++i) EXPECT_LT(std::abs(up[i] - up[i - 1]), 0.009 + 1e-9) << i;
+}
+
 TEST(SkinOnFloor, ShapesThatCoverTheMeshHaveNoPointsOfTheirOwn) {
   const auto points_of = [](const Character& character) {
     BakeSettings settings;
