@@ -254,8 +254,10 @@ Status check_combinations(const BakeSettings& settings) {
   if (settings.knockout && behaviour_settings(settings).kind == Behaviour::limp)
     return usage_error("--knockout-at is for a body that lives: a limp one is out from the start",
                        "leave one of --knockout-at and --behaviour limp away");
+  if (settings.append && writes(OutputFormat::vrma))
+    return usage_error("--append is for glTF and FBX: a .vrma holds one motion", "leave the .vrma away");
   if (settings.append && to_bvh)
-    return usage_error("--append is for glTF: a BVH holds one motion", "leave the .bvh away");
+    return usage_error("--append is for glTF and FBX: a BVH holds one motion", "leave the .bvh away");
   return Done{};
 }
 

@@ -67,6 +67,10 @@ int judge_command(const Arguments& arguments) {
   declare_humanoid_options(options, settings.humanoid);
   options.flag("--json", json, "as JSON");
   if (const auto status = status_at_once(options, arguments)) return *status;
+  if (settings.judge.impact_s && settings.judge.from_s)
+    return print_error(usage_error("--impact and --from exclude each other",
+                                   "give --impact where the time of the blow is known, --from where it is "
+                                   "looked for"));
 
   Diagnostics diagnostics;
   const auto judged = judge_clip(settings, diagnostics);

@@ -76,8 +76,16 @@ Status check(const RenderRequest& request) {
   const RenderSettings& settings = request.settings;
   if (*kind != PictureKind::sheet && (settings.cells || settings.columns))
     return usage_error("--cells and --columns are for sheets", "ask for -o NAME.png, or leave them out");
-  if (*kind == PictureKind::sheet && settings.turn_s)
-    return usage_error("--turntable is for moving pictures", "ask for -o NAME.webp or -o NAME_####.png");
+  const RenderSettings defaults;
+  const auto moving_only = [&](const char* option) {
+    return usage_error(fmt::format("{} is for moving pictures", option),
+                       "ask for -o NAME.webp or -o NAME_####.png");
+  };
+  if (*kind == PictureKind::sheet && settings.turn_s) return moving_only("--turntable");
+  if (*kind == PictureKind::sheet && settings.fps != defaults.fps) return moving_only("--fps");
+  if (*kind == PictureKind::sheet && settings.speed != defaults.speed) return moving_only("--speed");
+  if (settings.region != defaults.region && !settings.overlays.ranges)
+    return usage_error("--region needs --rom", "add --rom to draw the ranges, or leave --region out");
   if (settings.size && settings.columns)
     return usage_error("--size and --columns exclude each other", "give one of them");
   return check_writable(request.output);

@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/options.h"
 #include "cli/settings_options.h"
+#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
@@ -67,6 +68,12 @@ void declare(Options& options, RomRequest& request) {
 Status check(const RomRequest& request) {
   if (request.max_excess_deg && !request.settings.check)
     return usage_error("--max-excess needs --check", "name a clip or a file to check");
+  if (!request.settings.check) {
+    const HumanoidOptions defaults;
+    for (const HumanoidSetting& setting : humanoid_settings())
+      if (setting.get(request.settings.humanoid) != setting.get(defaults))
+        return usage_error(fmt::format("--{} needs --check", setting.name), "name a clip or a file to check");
+  }
   if (request.output.empty()) return Done{};
   if (const Status status = check_picture_name(request.output); !status) return status.error();
   return check_writable(request.output);

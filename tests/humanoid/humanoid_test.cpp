@@ -167,6 +167,11 @@ TEST(Humanoid, UnitsOfFilesThatStateNoneAreGuessedAsDrawn) {
 
 TEST(Humanoid, TakesUnitUpAndHeightFromTheUser) {
   const Character character = figure({.unit = 100.0});
+  Diagnostics said;
+  EXPECT_TRUE(
+      map_humanoid(character, {.map = {}, .metres_per_unit = 0.02, .up_axis = {}, .height_m = 1.2}, said));
+  ASSERT_EQ(said.warnings().size(), 1u);
+  EXPECT_EQ(said.warnings()[0].what, "--unit has no effect beside --height, which sets the size");
   EXPECT_DOUBLE_EQ(mapped(character, {.map = {}, .metres_per_unit = 0.02, .up_axis = {}, .height_m = {}})
                        .world_from_file.scale,
                    0.02);
