@@ -511,7 +511,7 @@ void warn_of_another_figure(const Character& character, const Bones& bones, Diag
   const int top =
       common_ancestor(skeleton, bones[Segment::pelvis],
                       common_ancestor(skeleton, legs_fork(skeleton, bones), bones[Segment::head]));
-  if (top < 0 || skeleton.nodes[top].name.empty()) return;
+  if (top < 0) return;
   std::vector<char> allowed = may_be_bones(character, -1, false);
   const std::vector<char> taken = nodes_below(skeleton, top);
   for (std::size_t i = 0; i < allowed.size(); ++i) allowed[i] = allowed[i] && !taken[i];

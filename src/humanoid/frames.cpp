@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "base/quantile.h"
 #include "bones/bones.h"
 #include "bones/names.h"
 #include "humanoid/assemble.h"
@@ -58,6 +59,16 @@ SkinExtent body_extent(const Character& character, const Humanoid& humanoid, con
   return {crown.found && soles.found, soles.min, crown.max};
 }
 
+/// Whether most bones' skin lies farther from them than a thigh is long, as where the bind pose has another
+/// scale than the skeleton: no single one need be astray.
+bool most_lie_elsewhere(std::vector<double> distances, double height) {
+  constexpr double kThighLength = 0.25;  // of the height
+  constexpr std::size_t kFewest = 6;     // bones that carry skin
+  if (distances.size() < kFewest) return false;
+  const std::size_t middle = distances.size() / 2;
+  return ranked(std::move(distances), middle) > kThighLength * height;
+}
+
 /// Nodes of the body whose skin lies far away from them: its bind pose has nothing to do with the skeleton.
 std::vector<char> skin_astray(const Character& character, const Humanoid& humanoid, const Landmarks& f,
                               double height, Diagnostics& diagnostics) {
@@ -66,8 +77,13 @@ std::vector<char> skin_astray(const Character& character, const Humanoid& humano
     for (const int node : segment.chain) is_bone[static_cast<std::size_t>(node)] = 1;
   std::size_t count = 0;
   CarriedSkin farthest;
-  for (const CarriedSkin& skin : carried_skin(character, f.world)) {
-    if (!is_astray(skin.distance, height)) continue;
+  const std::vector<CarriedSkin> carried = carried_skin(character, f.world);
+  std::vector<double> of_bones;
+  for (const CarriedSkin& skin : carried)
+    if (is_bone[static_cast<std::size_t>(skin.node)]) of_bones.push_back(skin.distance);
+  const bool all = most_lie_elsewhere(std::move(of_bones), height);
+  for (const CarriedSkin& skin : carried) {
+    if (!all && !is_astray(skin.distance, height)) continue;
     astray[static_cast<std::size_t>(skin.node)] = 1;
     if (!is_bone[static_cast<std::size_t>(skin.node)]) continue;  // a wing, a spear: as long as it likes
     ++count;

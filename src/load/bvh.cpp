@@ -333,6 +333,12 @@ class BvhReader {
           fmt::format("has less than one frame a second (Frame Time {}); the format wants seconds, "
                       "as in 0.0333333",
                       quoted(*time)));
+    if (*seconds < 0.0005)
+      diagnostics_.warn(
+          path_.string(),
+          fmt::format("has {:.3g} frames a second (Frame Time {}); the format wants seconds, as in "
+                      "0.0333333",
+                      1.0 / *seconds, quoted(*time)));
     source.frame_time_s = *seconds;
     fps = rate_of(*time, *seconds);
     return Done{};

@@ -365,6 +365,27 @@ TEST(PublicFaults, ASecondFigureIsSaidWhateverItsBonesAreCalled) {
       << diagnostics.warnings()[0].what;
 }
 
+TEST(PublicFaults, ASecondFigureIsSaidWhereNoBoneHasAName) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/two_figures.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  for (Node& node : character->skeleton.nodes) node.name.clear();
+  ASSERT_TRUE(map_humanoid(*character, {}, diagnostics));
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("holds more than one figure"), std::string::npos);
+}
+
+TEST(PublicFaults, ABindPoseOfAnotherScaleIsSaidAndTheHeightIsThatOfTheBones) {
+  const Mapped m = with_bind_pose([](std::size_t, Affine& inverse_bind) {
+    inverse_bind = Affine::Identity();
+    inverse_bind.linear() *= 1.0 / 3.0;
+  });
+  ASSERT_TRUE(m.humanoid) << m.humanoid.error().message();
+  EXPECT_NE(m.warnings().find("the bind pose of the skin does not fit"), std::string::npos) << m.warnings();
+  EXPECT_NEAR(m.humanoid->height_m, 1.74, 0.12);
+}
+
 TEST(PublicFaults, AScaleThatDiffersByAxisIsSaid) {
   for (const double along : {1.0, 1.3}) {
     Diagnostics diagnostics;
