@@ -35,9 +35,10 @@ void declare(Options& options, JudgeClipSettings& settings) {
   options.group("what is judged");
   options.number("--impact", "S", judge.impact_s, Range{0.0, kLongest_s},
                  "time of the blow [default: as baked into the clip, else found]");
-  options.number("--from", "S", judge.from_s, Range{0.0, kLongest_s}, "the blow is looked for from here");
+  options.number("--from", "S", judge.from_s, Range{0.0, kLongest_s},
+                 "time from which on the blow is looked for");
   options.number("--to", "S", judge.to_s, Range{0.0, kLongest_s},
-                 "the clip is judged until here [default: the end]");
+                 "time until which the clip is judged [default: the end]");
   options.custom(
       "--mode", "stand|fall|getup", [&judge](const std::string& word) { return take_kind(word, judge); },
       "what the clip shows [default: found]");

@@ -52,14 +52,14 @@ void declare_look(Options& options, RenderSettings& settings) {
   options.flag("--rom", settings.overlays.ranges,
                "each joint's range of motion as a cone: amber near its edge, red outside");
   options.text("--region", "NAME|FILE", settings.region, "whose ranges: human, diamond, box or a TOML file");
-  options.flag("--trail", settings.overlays.trail, "the way of the hips");
+  options.flag("--trail", settings.overlays.trail, "draws the path of the hips");
 }
 
 void declare_kinds(Options& options, RenderSettings& settings) {
   options.group("sheet");
-  options.whole("--cells", "N", settings.cells, 1, 100, "moments shown",
+  options.whole("--cells", "N", settings.cells, 1, 100, "how many moments a sheet shows",
                 "default 12; 6 a row for several files");
-  options.whole("--columns", "N", settings.columns, 1, 100, "cells side by side", "default 4");
+  options.whole("--columns", "N", settings.columns, 1, 100, "how many cells stand side by side", "default 4");
   options.group("moving picture");
   options.number("--fps", "HZ", settings.fps, Range{1.0, 60.0}, "pictures a second");
   options.number("--speed", "X", settings.speed, Range{0.01, 10.0},

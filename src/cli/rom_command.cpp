@@ -52,7 +52,8 @@ void declare(Options& options, RomRequest& request) {
                "range of motion: human diamond box, or a TOML file");
   options.text("--check", "CLIP|FILE", settings.check,
                "a clip's path through the ranges: a clip of the mannequin, or the last clip of a file");
-  options.text("--clip", "NAME", settings.clip, "which clip of that file, by its name or #INDEX");
+  options.text("--clip", "NAME", settings.clip,
+               "with --check FILE: the clip of the file, by its name or #INDEX [default: the last]");
   options.custom(
       "--state", "AY,AZ", [&settings](const std::string& text) { return take_state(settings, text); },
       "a point of the joint, degrees, with the chords of the polygon through it");
