@@ -450,7 +450,7 @@ void ends_without_side(const Reader& reader, Bones& bones) {
 }
 
 /// Every source in turn, on the nodes that may be bones.
-Bones search(const Reader& reader, const Bones& given, Ends ends = Ends::required) {
+Bones search(const Reader& reader, const Bones& given, LegEnds ends = LegEnds::required) {
   Bones bones = given;
   const auto trunk = [&] {
     if (bones[Segment::pelvis] < 0) pelvis_by_name(reader, bones);
@@ -597,7 +597,7 @@ Result<Bones> find_bones(const Character& character, const HumanoidOptions& opti
     if (!second_round) continue;
     const bool is_unnamed =
         std::all_of(bones.node.begin(), bones.node.end(), [](int node) { return node < 0; });
-    if (is_unnamed) bones = search(reader, given, Ends::may_be_missing);
+    if (is_unnamed) bones = search(reader, given, LegEnds::may_be_missing);
     if (!complete(bones)) add_stray_bones(reader, bones);
   }
   if (complete(bones)) add_feet_apart(character, bones);
@@ -618,7 +618,7 @@ std::optional<Bones> find_bones_by_shape(const Character& character, const Human
   if (const Status status = apply_user_map(character, options, bones); !status) return std::nullopt;
   const int root = options.root.empty() ? -1 : character.skeleton.find(options.root);
   fill(bones, find_by_topology(character, rest_pose(character.skeleton), may_be_bones(character, root, false),
-                               bones, Ends::required));
+                               bones, LegEnds::required));
   return complete(bones) && misplaced(character, bones).empty() ? std::optional(bones) : std::nullopt;
 }
 

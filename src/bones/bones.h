@@ -54,12 +54,12 @@ std::string misplaced(const Character& character, const Bones& bones);
 
 /// Whether legs that are found by shape end in a joint of their own, an ankle. Arms have to: without wrists
 /// clavicles would be taken for upper arms.
-enum class Ends { required, may_be_missing };
+enum class LegEnds { required, may_be_missing };
 
 /// The bones by shape alone, of the `allowed` nodes: a trunk with two mirrored legs below and two mirrored
 /// arms above; limbs that `given` starts are followed from there. Empty (all -1) when there is none.
 Bones find_by_topology(const Character& character, const Pose& pose, const std::vector<char>& allowed,
-                       const Bones& given, Ends ends);
+                       const Bones& given, LegEnds ends);
 
 /// Where neither foot is known: what stands apart under both legs and carries the feet's skin or meshes.
 void add_feet_apart(const Character& character, Bones& bones);

@@ -11,11 +11,11 @@ constexpr double kNear = 0.25;   // of the leg's length: a foot from where its l
 constexpr double kSmall = 0.5;   // of the leg's length: a foot's mesh
 constexpr double kAlike = 0.25;  // of the leg's length: how differently both feet may lie under their legs
 
-struct Leg {
+struct LegSegments {
   Segment thigh, shank, foot;
 };
-constexpr Leg kLegs[] = {{Segment::thigh_l, Segment::shank_l, Segment::foot_l},
-                         {Segment::thigh_r, Segment::shank_r, Segment::foot_r}};
+constexpr LegSegments kLegs[] = {{Segment::thigh_l, Segment::shank_l, Segment::foot_l},
+                                 {Segment::thigh_r, Segment::shank_r, Segment::foot_r}};
 
 /// Largest extent of the meshes on each node without a skin, in its own axes times the node's scale.
 std::vector<double> mesh_sizes(const Character& character, const std::vector<Affine>& world) {
@@ -43,14 +43,14 @@ class FeetApart {
         size_(mesh_sizes(character, world_)) {}
 
   Vec3 place(int node) const { return world_[node].translation(); }
-  double length(const Leg& leg) const {
+  double length(const LegSegments& leg) const {
     return 2.0 * (place(bones_[leg.shank]) - place(bones_[leg.thigh])).norm();
   }
   /// Shanks are about as long as thighs.
-  Vec3 end(const Leg& leg) const { return 2.0 * place(bones_[leg.shank]) - place(bones_[leg.thigh]); }
+  Vec3 end(const LegSegments& leg) const { return 2.0 * place(bones_[leg.shank]) - place(bones_[leg.thigh]); }
 
   /// The nearest to where the leg ends; -1 where there is none near.
-  int foot(const Leg& leg) const {
+  int foot(const LegSegments& leg) const {
     int found = -1;
     double nearest = kNear * length(leg);
     for (const int node : skeleton_.order) {

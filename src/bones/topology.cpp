@@ -84,9 +84,9 @@ std::optional<LimbShape> limb_without_end(const Tree& tree, const std::vector<in
 
 /// Of all neighbouring triples along the path the one whose two bones are long and of like length: shoulder,
 /// elbow, wrist beat clavicle, shoulder, elbow and elbow, wrist, finger.
-std::optional<LimbShape> limb_at(const Tree& tree, int node, Ends ends) {
+std::optional<LimbShape> limb_at(const Tree& tree, int node, LegEnds ends) {
   const std::vector<int> path = joints_below(tree, node);
-  if (ends == Ends::may_be_missing && path.size() == 2) return limb_without_end(tree, path);
+  if (ends == LegEnds::may_be_missing && path.size() == 2) return limb_without_end(tree, path);
   std::optional<LimbShape> best;
   double best_score = 0.0;
   for (std::size_t i = 0; i + 2 < path.size(); ++i) {
@@ -122,7 +122,7 @@ struct Pair {
 bool alike(double a, double b) { return std::abs(a - b) <= 0.08 * std::max(a, b); }
 
 /// The longest two branches of a fork that mirror each other.
-std::vector<Pair> mirrored_pairs(const Tree& tree, int fork, Ends ends) {
+std::vector<Pair> mirrored_pairs(const Tree& tree, int fork, LegEnds ends) {
   std::vector<LimbShape> limbs;
   for (const int child : tree.children[fork])
     if (const auto limb = limb_at(tree, child, ends)) limbs.push_back(*limb);
@@ -218,7 +218,7 @@ bool may_be_trunk(const Tree& tree, int lower, const Pair& legs, int upper, cons
   return !share_a_bone(legs, arms);
 }
 
-std::optional<BodyPlan> best_shape(const Tree& tree, Ends ends) {
+std::optional<BodyPlan> best_shape(const Tree& tree, LegEnds ends) {
   std::vector<std::pair<int, Pair>> forks;
   for (const int node : tree.skeleton.order)
     for (const Pair& pair : mirrored_pairs(tree, node, ends)) forks.emplace_back(node, pair);
@@ -236,7 +236,7 @@ std::optional<BodyPlan> best_shape(const Tree& tree, Ends ends) {
 /// Of the joints of the skin, or of all nodes where the skin covers only part of the limbs; what is named the
 /// end of a bone is none.
 std::optional<BodyPlan> shape_of(const Character& character, const Tree& all, const Pose& pose,
-                                 const std::vector<char>& allowed, Ends ends) {
+                                 const std::vector<char>& allowed, LegEnds ends) {
   constexpr double kClearlyMore = 1.1;
   if (character.skins.empty()) return best_shape(all, ends);
   std::vector<char> joints = skin_joints(character), bones = allowed;
@@ -321,7 +321,7 @@ void follow_given(const Tree& tree, const Bones& given, Bones& bones) {
 }  // namespace
 
 Bones find_by_topology(const Character& character, const Pose& pose, const std::vector<char>& allowed,
-                       const Bones& given, Ends ends) {
+                       const Bones& given, LegEnds ends) {
   const Tree tree(character, pose, allowed);
   Bones bones;
   if (const auto shape = shape_of(character, tree, pose, allowed, ends)) {
