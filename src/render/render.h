@@ -26,7 +26,7 @@ struct Picture {
 
 Result<std::vector<std::uint8_t>> encode_png(const Picture& picture);
 
-/// Quick: a tenth more bytes in a third of the time.
+/// Quick: more bytes in less time.
 enum class Effort { quick, thorough };
 
 /// Lossy, `quality` 0 to 100.
