@@ -1,12 +1,12 @@
 #include "body/body.h"
 
 #include <Eigen/Eigenvalues>
-#include <random>
 
 #include "body/anthropometry.h"
 #include "body/ground.h"
 #include "body/shapes.h"
 #include "simulate/standing_man.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -54,13 +54,12 @@ TEST(Body, LeftAndRightAreMirrored) {
 }
 
 TEST(Shapes, ACapsuleRecoversTheRadiusOfACylindricalLimb) {
-  std::mt19937_64 generator(1);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  Random random(1);
   std::vector<Vec3> skin;
   const Vec3 end(0.0, -0.4, 0.0);
   for (int i = 0; i < 500; ++i) {
-    const double angle = 2.0 * kPi * unit(generator);
-    skin.push_back({0.06 * std::cos(angle), -0.4 * unit(generator), 0.06 * std::sin(angle)});
+    const double angle = random.uniform(0.0, 2.0 * kPi);
+    skin.push_back({0.06 * std::cos(angle), -random.uniform(0.0, 0.4), 0.06 * std::sin(angle)});
   }
   const Shape shape = fit_shapes(Segment::thigh_l, end, 1.75, skin).front();
   EXPECT_EQ(shape.kind, ShapeKind::capsule);
