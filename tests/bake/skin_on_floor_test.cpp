@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "bake/bake.h"
-#include "body/ground.h"
 #include "load/load.h"
 #include "support/extra_data.h"
 
@@ -76,16 +75,6 @@ TEST(SkinOnFloor, OfStylisedCharacters) {
         "quaternius_glb/ultimate_space_pack/Astronaut_BarbaraTheBee-transformed.glb",
         "quaternius_glb/modular_women/Witch.glb", "vrm_addon/Example.vrm", "vrm_addon/sphere.vrm"})
     expect_above_the_floor(file, character_of(*data / "characters" / file));
-}
-
-TEST(SkinOnFloor, DeepSkinIsLiftedAsFastAsItIsDeep) {
-  const std::vector<double> depth(60, 0.109);
-  const std::vector<double> little = lifts(depth, 0.009, 0.04, 60.0), all = lifts(depth, 0.009, 0.25, 60.0);
-  EXPECT_NEAR(little.back(), 0.04, 1e-9);
-  EXPECT_NEAR(little[12], 0.02, 1e-9);
-  EXPECT_NEAR(all.back(), 0.1, 1e-9);
-  EXPECT_NEAR(all[12], 0.05, 1e-9);
-  EXPECT_EQ(all[0], 0.0);
 }
 
 TEST(SkinOnFloor, ShapesThatCoverTheMeshHaveNoPointsOfTheirOwn) {

@@ -103,5 +103,15 @@ TEST(Ground, NothingIsRaisedByMoreThanFourCentimetres) {
   EXPECT_NEAR(frames.back()[0].translation.y(), -0.16, 1e-12);
 }
 
+TEST(Ground, DeepSkinIsLiftedAsFastAsItIsDeep) {
+  const std::vector<double> depth(60, 0.109);
+  const std::vector<double> little = lifts(depth, 0.009, 0.04, 60.0), all = lifts(depth, 0.009, 0.25, 60.0);
+  EXPECT_NEAR(little.back(), 0.04, 1e-9);
+  EXPECT_NEAR(little[12], 0.02, 1e-9);
+  EXPECT_NEAR(all.back(), 0.1, 1e-9);
+  EXPECT_NEAR(all[12], 0.05, 1e-9);
+  EXPECT_EQ(all[0], 0.0);
+}
+
 }  // namespace
 }  // namespace ukemi
