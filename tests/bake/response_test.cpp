@@ -79,6 +79,24 @@ TEST(FootSlide, OfAFootInTheAirOfAReportedStepIsNone) {
   EXPECT_NEAR(slide_of_a_foot(skim, {begun}), 0.8, 1e-9);
 }
 
+/// The sole is that of the stance, however the foot lies in the first frame.
+TEST(FootSlide, OfAClipThatBeginsOnItsToesIsOfTheStancesSole) {
+  const test::StandingMan man;
+  BakedClip baked;
+  baked.prepared.body = man.body;
+  baked.prepared.home = man.segments;
+  baked.prepared.start.state.segments = man.segments;
+  baked.timeline.trajectory.fps = 60.0;
+  for (int f = 0; f < kFrames; ++f) {
+    BodyPose pose = man.segments;
+    Rigid& foot = pose[index(Segment::foot_r)];
+    if (f == 0) foot.rotation = exp_rotation(Vec3(0.0, 0.0, -radians(40.0))) * foot.rotation;
+    foot.translation += Vec3(0.002 * f, f == 0 ? 0.0 : 0.02, 0.0);  // in the air, level, slow
+    baked.timeline.trajectory.frames.push_back(pose);
+  }
+  EXPECT_EQ(response_of(baked).foot_slide_max_m, 0.0);
+}
+
 /// The clip of a bake that begins in a walk, whose first frame has a foot on its toes.
 TEST(FootSlide, OfAWalkerIsNotTheWayOfHisSwings) {
   Diagnostics diagnostics;
