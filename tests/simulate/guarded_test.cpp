@@ -175,6 +175,12 @@ TEST(GuardedBehaviour, AFailureIsRunAgainOnceWithAWarningAndLeavesNothingBehind)
   EXPECT_EQ(calm()->figures.hash, before);
 }
 
+TEST(GuardedBehaviour, HelpIsToldAsForceTimesTime) {
+  const auto result = run_with(Faulty::In::drive, [](Goals& goals) { goals.help_n = Vec3(30.0, 40.0, 0.0); });
+  ASSERT_TRUE(result) << result.error().message();
+  EXPECT_NEAR(result->figures.help_n_s, 50.0 * 0.4, 0.5);  // from 0.1 to 0.5 s
+}
+
 /// The strongest that a joint can do is all that comes of a goal that wants more.
 TEST(GuardedBehaviour, WhatNoPersonCouldDoIsCutToWhatThisOneCan) {
   const auto result = run_with(Faulty::In::drive, [](Goals& goals) {
