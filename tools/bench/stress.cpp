@@ -75,13 +75,17 @@ void draw_blow(Random& random, const Hero& hero, const std::vector<ImpactPreset>
   words.emplace_back("hit", name(hit));
   words.emplace_back(
       "from", fmt::format("{:.1f},{:.1f}", random.uniform(-180.0, 180.0), random.uniform(-20.0, 50.0)));
+  const double most_n_s = kMostSpeed_m_s * hero.body.segments[index(hit)].mass_kg;
   if (below(random, 2) == 0) {
-    words.emplace_back("preset", presets[below(random, presets.size())].name);
-    words.emplace_back("strength", fmt::format("{:.3f}", spread(random, 0.2, 3.0)));
+    const ImpactPreset& preset = presets[below(random, presets.size())];
+    double strength = spread(random, 0.2, 3.0);
+    if (preset.scene == SceneKind::impulse)
+      strength = std::min(strength, most_n_s / (preset.mass_kg * preset.speed_m_s));
+    words.emplace_back("preset", preset.name);
+    words.emplace_back("strength", fmt::format("{:.3f}", std::max(strength, 0.01)));
     return;
   }
-  const double n_s = std::min(momentum_for(hero.body, spread(random, 2.0, 200.0)),
-                              kMostSpeed_m_s * hero.body.segments[index(hit)].mass_kg);
+  const double n_s = std::min(momentum_for(hero.body, spread(random, 2.0, 200.0)), most_n_s);
   words.emplace_back("scene", "impulse");
   words.emplace_back("ball-mass", "1");
   words.emplace_back("ball-speed", fmt::format("{:.3f}", std::max(n_s, 0.01)));
