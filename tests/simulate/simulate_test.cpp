@@ -409,7 +409,7 @@ TEST(Simulate, RandomHitsStayInsideTheRange) {
     EXPECT_LT(result.limits.excess_projected_max_deg, 0.001) << seed;
     EXPECT_LT(result.figures.joint_separation_max_m, 0.010) << seed;
     EXPECT_LT(result.figures.energy_gain_max_j, 6.0) << seed;
-    EXPECT_LT(result.figures.floor_penetration_max_m, 0.010) << seed;
+    EXPECT_LT(result.figures.floor_penetration_max_m, 0.012) << seed;
     for (const BodyPose& frame : result.trajectory.frames)
       for (const Rigid& segment : frame) ASSERT_TRUE(segment.translation.allFinite());
   }
