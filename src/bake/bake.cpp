@@ -188,7 +188,7 @@ void make_keys(const Character& character, const SegmentFrames& frames, const Ex
   if (settings.all_joints) reduction.joints = joints_of_skins(character);
   baked.reduced =
       reduce_keys(skeleton, exported.clip, exported.humanoid.world_from_file, reduction,
-                  [&](std::size_t frame, const Pose& reduced) { return keeper.too_far(frame, reduced); });
+                  [&](std::size_t frame, const Pose& reduced) { return keeper.to_mend(frame, reduced); });
   const Animation animation{baked.reduced.name, 0.0, exported.clip.duration_s(), exported.clip.fps,
                             baked.reduced.tracks};
   std::vector<Pose> poses;
@@ -254,8 +254,10 @@ Status check_combinations(const BakeSettings& settings) {
   if (settings.knockout && behaviour_settings(settings).kind == Behaviour::limp)
     return usage_error("--knockout-at is for a body that lives: a limp one is out from the start",
                        "leave one of --knockout-at and --behaviour limp away");
+  if (settings.append && writes(OutputFormat::vrma))
+    return usage_error("--append is for glTF and FBX: a .vrma holds one motion", "leave the .vrma away");
   if (settings.append && to_bvh)
-    return usage_error("--append is for glTF: a BVH holds one motion", "leave the .bvh away");
+    return usage_error("--append is for glTF and FBX: a BVH holds one motion", "leave the .bvh away");
   return Done{};
 }
 

@@ -167,6 +167,14 @@ std::string library_row(const std::string& character, const BakeSettings& settin
   return row.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+bool is_library_row(const std::string& text) {
+  const Json row = Json::parse(text, nullptr, false);
+  if (!row.is_object() || !row.contains("Name") || !row["Name"].is_string()) return false;
+  return std::all_of(row.begin(), row.end(), [](const Json& value) {
+    return value.is_string() || value.is_number() || value.is_boolean();
+  });
+}
+
 std::string library_json(const std::vector<LibraryEntry>& entries) {
   return Json(rows_of(entries)).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -177,7 +185,7 @@ std::string library_csv(const std::vector<LibraryEntry>& entries) {
   for (const Json& row : rows_of(entries)) {
     std::string titles, line;
     for (const auto& [key, value] : row.items()) {
-      titles += (titles.empty() ? "" : ",") + key;
+      titles += (titles.empty() ? "" : ",") + csv_text(key);
       line += (key == "Name" ? "" : ",") + (value.is_string() ? csv_text(value) : value.dump());
     }
     text += (text.empty() ? titles + "\r\n" : "") + line + "\r\n";

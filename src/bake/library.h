@@ -14,8 +14,12 @@ namespace ukemi {
 /// not happen is -1. `character` is its name; Name is CHARACTER_REACTION, the verdict is left empty.
 std::string library_row(const std::string& character, const BakeSettings& settings, const BakedFile& baked);
 
+/// Whether a text is such a row, so far as the functions below need it: an object with a text Name, whose
+/// members are texts, numbers and booleans.
+bool is_library_row(const std::string& text);
+
 struct LibraryEntry {
-  std::string row;      // of library_row
+  std::string row;      // is_library_row
   std::string verdict;  // a reviewer's: "", "accepted", "rejected"
 };
 

@@ -1,5 +1,6 @@
 #include "bake/record.h"
 
+#include "bake/library.h"
 #include "bake/response.h"
 
 #include <cmath>
@@ -88,7 +89,7 @@ std::optional<ReactionRecord> parse_record(std::string_view line) {
     record.digest = json.at("digest");
     if (!json.at("figures").is_null()) record.figures = figures_from(json.at("figures"));
     record.library = json.at("library");
-    if (record.figures && !Json::accept(record.library)) return std::nullopt;
+    if (record.figures && !is_library_row(record.library)) return std::nullopt;
     for (const Json& file : json.at("files"))
       record.files.push_back({file.at("name"), file.at("bytes"), file.at("sha256")});
     for (const WrittenFile& file : record.files)

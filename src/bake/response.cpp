@@ -9,12 +9,15 @@
 
 #include "behave/legs.h"
 #include "body/on_ground.h"
+#include "judge/events.h"
+#include "judge/signal.h"
 
 namespace ukemi {
 namespace {
 
 constexpr double kStandingShare = 0.75;  // of the pelvis's height at the start
 constexpr double kOffFloor_m = 0.004;    // a sole whose lowest corner is higher stands no more
+constexpr double kFlat_m = 0.010;        // between the highest and the lowest corner of a level sole
 constexpr double kSettling_s = 0.05;     // of a plant
 
 std::optional<TouchDown> earlier(const std::optional<TouchDown>& a, const std::optional<TouchDown>& b) {
@@ -22,46 +25,71 @@ std::optional<TouchDown> earlier(const std::optional<TouchDown>& a, const std::o
   return a->time_s <= b->time_s ? a : b;
 }
 
+using Corners = std::array<Vec3, 4>;
+
+Corners corners_at(const Leg& leg, const BodyPose& pose) {
+  Corners corners;
+  for (int i = 0; i < 4; ++i) corners[i] = pose[index(leg.foot)] * leg.sole[i];
+  return corners;
+}
+
+/// How far the least moved corner of a sole has gone over the ground.
+double least_way(const Corners& from, const Corners& to) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 4; ++i) least = std::min(least, horizontal_norm(to[i] - from[i]));
+  return least;
+}
+
+bool in_the_air(const std::vector<StepTaken>& steps, Segment foot, double time_s) {
+  return std::any_of(steps.begin(), steps.end(), [&](const StepTaken& step) {
+    return step.foot == foot && time_s >= step.lift_s && (!step.contact_s || time_s < *step.contact_s);
+  });
+}
+
+/// The contract of foot_slide, for a sole that is not in the air of a step.
+bool stands(const Corners& before, const Corners& now, double frame_s) {
+  const auto [low, high] =
+      std::minmax_element(now.begin(), now.end(), [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); });
+  if (low->y() > kOffFloor_m) return false;
+  return high->y() - low->y() < kFlat_m || least_way(before, now) < kPlantedSpeed_m_s * frame_s;
+}
+
 /// Ways of a sole's corners while it stands.
 class Plant {
  public:
   /// How far the least moved corner has gone.
-  double stand(const std::array<Vec2, 4>& corners, double time_s) {
+  double stand(const Corners& corners, double time_s) {
     if (!since_s_) since_s_ = time_s;
     if (time_s - *since_s_ < kSettling_s) {
       from_ = corners;
       most_.fill(0.0);
       return 0.0;
     }
-    for (int i = 0; i < 4; ++i) most_[i] = std::max(most_[i], (corners[i] - from_[i]).norm());
+    for (int i = 0; i < 4; ++i) most_[i] = std::max(most_[i], horizontal_norm(corners[i] - from_[i]));
     return *std::min_element(most_.begin(), most_.end());
   }
   void lift() { since_s_.reset(); }
 
  private:
   std::optional<double> since_s_;
-  std::array<Vec2, 4> from_{};
+  Corners from_{};
   std::array<double, 4> most_{};
 };
 
-double slide_of(const Leg& leg, const Trajectory& trajectory, double until_s) {
+double slide_of(const Leg& leg, const Trajectory& trajectory, const std::vector<StepTaken>& steps,
+                double until_s) {
   Plant plant;
   double most = 0.0;
+  Corners before = corners_at(leg, trajectory.frames.front());
   for (std::size_t f = 0; f < trajectory.frames.size(); ++f) {
     const double time_s = static_cast<double>(f) / trajectory.fps;
     if (time_s > until_s) break;
-    const Rigid& foot = trajectory.frames[f][index(leg.foot)];
-    std::array<Vec2, 4> corners;
-    double lowest = 1e9;
-    for (int i = 0; i < 4; ++i) {
-      const Vec3 corner = foot * leg.sole[i];
-      corners[i] = on_ground(corner);
-      lowest = std::min(lowest, corner.y());
-    }
-    if (lowest > kOffFloor_m)
+    const Corners now = corners_at(leg, trajectory.frames[f]);
+    if (in_the_air(steps, leg.foot, time_s) || !stands(before, now, 1.0 / trajectory.fps))
       plant.lift();
     else
-      most = std::max(most, plant.stand(corners, time_s));
+      most = std::max(most, plant.stand(now, time_s));
+    before = now;
   }
   return most;
 }
@@ -94,10 +122,11 @@ EndPose final_pose_of(const BodyPose& start, const BodyPose& end) {
   return (chest * Vec3::UnitZ()).y() < 0.0 ? EndPose::right_side : EndPose::left_side;
 }
 
-double foot_slide(const ArticulatedBody& body, const Trajectory& trajectory, double until_s) {
+double foot_slide(const ArticulatedBody& body, const BodyPose& home, const Trajectory& trajectory,
+                  const std::vector<StepTaken>& steps, double until_s) {
   double most = 0.0;
   for (const BodySide side : kSides)
-    most = std::max(most, slide_of(Leg(body, trajectory.frames.front(), side), trajectory, until_s));
+    most = std::max(most, slide_of(Leg(body, home, side), trajectory, steps, until_s));
   return most;
 }
 
@@ -149,7 +178,7 @@ Response response_of(const BakedClip& outcome) {
                      : response.steps.empty()                                         ? Outcome::stood
                                                                                       : Outcome::stepped;
   response.foot_slide_max_m =
-      foot_slide(outcome.prepared.body, trajectory,
+      foot_slide(outcome.prepared.body, outcome.prepared.home, trajectory, response.steps,
                  response.fall_begins_s.value_or(std::numeric_limits<double>::infinity()));
   response.travel_m = end[0].translation - start[0].translation;
   response.turn_deg =

@@ -40,8 +40,13 @@ struct Response {
 EndPose final_pose_of(const BodyPose& start, const BodyPose& end);
 
 /// Largest way of the least moved corner of a sole while it stands on the floor for more than 50 ms, from 50
-/// ms after it touched, up to `until_s`, m.
-double foot_slide(const ArticulatedBody& body, const Trajectory& trajectory, double until_s);
+/// ms after it touched, up to `until_s`, m. A foot stands with a corner within 4 mm of the floor, but not
+/// 1. between lift and contact of one of `steps` (times of the trajectory);
+/// 2. where it touches with an edge that goes faster than kPlantedSpeed_m_s (judge/events.h): a swing passes
+///    close to the floor. A flat sole that is dragged stands at any speed.
+/// `home`: a pose in which the soles are level.
+double foot_slide(const ArticulatedBody& body, const BodyPose& home, const Trajectory& trajectory,
+                  const std::vector<StepTaken>& steps, double until_s);
 
 /// "stepped 3 times, ends standing".
 std::string outcome_text(const Response& response);

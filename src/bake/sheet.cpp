@@ -226,11 +226,11 @@ Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const B
 }
 
 Result<std::vector<std::uint8_t>> bake_thumbnail(const Character& character, const BakeSettings& settings,
-                                                 const BakedClip& outcome, const ThumbnailOptions& options) {
+                                                 const BakedClip& outcome, int width, int height) {
   const Clip clip = clip_on_floor(character, outcome);
-  const auto picture = render_thumbnail(shot_of(character, settings, outcome, clip), options);
-  if (!picture) return picture.error();
-  return encode_webp(*picture, kThumbnailQuality);
+  const auto pictures = render_thumbnails(shot_of(character, settings, outcome, clip), width, height);
+  if (!pictures) return pictures.error();
+  return encode_webp(settings.theme == ThemeKind::dark ? pictures->dark : pictures->light, kThumbnailQuality);
 }
 
 Result<std::vector<std::uint8_t>> bake_preview(const Character& character, const BakeSettings& settings,

@@ -19,10 +19,9 @@ Result<std::vector<std::uint8_t>> bake_sheet(const Character& character, const B
                                              const BakedClip& outcome);
 
 /// The bake in one small picture as a WebP of about 4 kB: the figure half-way through its motion, see-through
-/// where it starts, and the blow.
+/// where it starts, and the blow; in the settings' theme.
 Result<std::vector<std::uint8_t>> bake_thumbnail(const Character& character, const BakeSettings& settings,
-                                                 const BakedClip& outcome,
-                                                 const ThumbnailOptions& options = {});
+                                                 const BakedClip& outcome, int width = 288, int height = 216);
 
 /// The bake as an animated WebP, 640 x 360 at 30 frames a second.
 Result<std::vector<std::uint8_t>> bake_preview(const Character& character, const BakeSettings& settings,

@@ -21,13 +21,14 @@ constexpr std::array<std::int8_t, 256> digit_values() {
 }  // namespace
 
 std::string base64(std::span<const std::uint8_t> bytes) {
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+  std::string text((bytes.size() + 2) / 3 * 4, '=');
+  char* out = text.data();
+  for (std::size_t i = 0; i < bytes.size(); i += 3, out += 4) {
     const std::size_t left = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < left ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= left ? kDigits[word >> (18 - 6 * k) & 63] : '=';
+    std::uint32_t word = std::uint32_t{bytes[i]} << 16;
+    if (left > 1) word |= std::uint32_t{bytes[i + 1]} << 8;
+    if (left > 2) word |= bytes[i + 2];
+    for (std::size_t k = 0; k <= left; ++k) out[k] = kDigits[word >> (18 - 6 * k) & 63];
   }
   return text;
 }

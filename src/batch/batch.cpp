@@ -164,7 +164,7 @@ class Batch {
       state.last = &record;
       progress(state);
     };
-    const Work work = batch_work(plan_.recipe, plan_.reactions, settings_.folder);
+    const Work work = batch_work(plan_.recipe, plan_.reactions, settings_.folder, settings_.after);
     const Status status = run_jobs(jobs, settings_.workers, work, ended,
                                    [&] { return result_.cannot_write.has_value() || stopped(); });
     if (!status) return status;

@@ -31,7 +31,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 class BatchWorker {
  public:
-  BatchWorker(const Recipe& recipe, fs::path folder) : recipe_(recipe), folder_(std::move(folder)) {}
+  BatchWorker(const Recipe& recipe, fs::path folder, AfterBake after)
+      : recipe_(recipe), folder_(std::move(folder)), after_(std::move(after)) {}
 
   ReactionRecord run(const Reaction& reaction, const std::string& digest, bool write) {
     const auto start = std::chrono::steady_clock::now();
@@ -46,6 +47,8 @@ class BatchWorker {
       record.error = status.error().message();
       record.fix = status.error().fix;
       record.cannot_write = status.error().kind == ErrorKind::output;
+    } else if (write && after_) {
+      after_(record, reaction.settings);
     }
     record.seconds = seconds_since(start);
     return record;
@@ -113,6 +116,7 @@ class BatchWorker {
 
   const Recipe& recipe_;
   fs::path folder_;
+  AfterBake after_;
   std::list<Loaded> kept_;  // the last used first
 };
 
@@ -122,8 +126,9 @@ std::string batch_job(std::size_t reaction, const std::string& digest, bool writ
   return nlohmann::ordered_json({{"reaction", reaction}, {"digest", digest}, {"write", write}}).dump();
 }
 
-Work batch_work(const Recipe& recipe, const std::vector<Reaction>& reactions, fs::path folder) {
-  const auto worker = std::make_shared<BatchWorker>(recipe, std::move(folder));
+Work batch_work(const Recipe& recipe, const std::vector<Reaction>& reactions, fs::path folder,
+                AfterBake after) {
+  const auto worker = std::make_shared<BatchWorker>(recipe, std::move(folder), std::move(after));
   return [worker, &reactions](const std::string& line) {
     const auto job = nlohmann::json::parse(line);
     const Reaction& reaction = reactions.at(job.at("reaction").get<std::size_t>());

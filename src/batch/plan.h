@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/build_id.h"
+#include "batch/batch_work.h"
 #include "batch/journal.h"
 #include "batch/recipe.h"
 #include "batch/workers.h"
@@ -32,6 +33,7 @@ struct BatchSettings {
   std::optional<double> max_excess_deg;      // reject what leaves the range of motion farther
   bool reject_unsettled = false;             // reject what does not come to rest
   WorkerSettings workers;
+  AfterBake after;                  // see batch_work
   std::string program{build_id()};  // that bakes: what another one baked is not kept
 };
 

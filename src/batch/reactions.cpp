@@ -109,7 +109,8 @@ void vary(const Jitter& jitter, Reaction& reaction) {
     settings.aim_left_m += rounded(left, 1e-4);
   }
   if (jitter.strength_percent > 0.0) settings.strength *= 1.0 + rounded(stronger, 1e-4);
-  if (settings.seed == 0.0) settings.seed = static_cast<double>(random.next() >> 32);
+  const bool varies = behaviour_settings(settings).kind != Behaviour::limp || settings.get_up_s;
+  if (settings.seed == 0.0 && varies) settings.seed = static_cast<double>(random.next() >> 32);
 }
 
 bool has_any(const Jitter& jitter) {

@@ -8,11 +8,13 @@
 namespace ukemi {
 namespace {
 
-constexpr int kDirections = 64;        // in which outermost points are sought
-constexpr double kAllowedDip = 0.005;  // m
-constexpr double kMostLift = 0.040;    // m
-constexpr double kSmoothing_s = 0.1;   // to either side
-constexpr double kLiftSpeed = 0.1;     // m/s, from the first frame on, of up to 40 mm; faster of more
+constexpr int kDirections = 64;         // in which outermost points are sought
+constexpr double kAllowedDip = 0.005;   // m
+constexpr double kMostLift = 0.040;     // m
+constexpr double kSmoothing_s = 0.1;    // to either side
+constexpr double kLiftSpeed = 0.1;      // m/s, from the first frame on, of up to 40 mm; faster of more
+constexpr double kLiftSpeedMost = 1.5;  // m/s, of skin that sinks fast: a tail, a coat
+constexpr double kUnseen = 0.010;       // m by which such skin may sink deeper than is allowed
 
 double lowest(const BodyPose& frame, const PerSegment<std::vector<Vec3>>& skin) {
   double low = 0.0;
@@ -21,6 +23,15 @@ double lowest(const BodyPose& frame, const PerSegment<std::vector<Vec3>>& skin) 
     for (const Vec3& point : skin[s]) low = std::min(low, frame[s].translation.y() + up.dot(point));
   }
   return low;
+}
+
+/// Speed, m/s, at which a lift has to grow from the first frame on so that no skin sinks more than kUnseen
+/// deeper than is allowed and than it does in the first frame. `needed`: lift that each frame asks for, m.
+double speed_of_sinking(const std::vector<double>& needed, double fps) {
+  double speed = 0.0;
+  for (std::size_t i = 1; i < needed.size(); ++i)
+    speed = std::max(speed, (needed[i] - needed[0] - kUnseen) * fps / static_cast<double>(i));
+  return std::min(speed, kLiftSpeedMost);
 }
 
 }  // namespace
@@ -55,6 +66,7 @@ std::vector<double> lifts(const std::vector<double>& depth_m, double allowed_m, 
   for (int i = 0; i < count; ++i)
     largest.push_back(
         around(needed, i, [](auto first, auto last) { return *std::max_element(first, last); }));
+  const double fastest = speed_of_sinking(needed, fps);
   std::vector<double> result;
   for (int i = 0; i < count; ++i) {
     const double mean = around(largest, i, [](auto first, auto last) {
@@ -62,7 +74,8 @@ std::vector<double> lifts(const std::vector<double>& depth_m, double allowed_m, 
       for (auto it = first; it != last; ++it) sum += *it;
       return sum / static_cast<double>(last - first);
     });
-    result.push_back(std::min(mean, kLiftSpeed * std::max(1.0, mean / kMostLift) * i / fps));
+    const double speed = std::max(kLiftSpeed * std::max(1.0, mean / kMostLift), fastest);
+    result.push_back(std::min(mean, speed * i / fps));
   }
   return result;
 }

@@ -15,7 +15,9 @@ PerSegment<std::vector<Vec3>> outermost_skin(const Character& character, const H
                                              const ArticulatedBody& body);
 
 /// How far to raise frames whose skin lies `depth_m` below the floor, so that it lies no deeper than
-/// `allowed_m`: smoothly over a tenth of a second and by `most_m` at most; the first frame not at all.
+/// `allowed_m`: smoothly over a tenth of a second and by `most_m` at most; the first frame not at all, and
+/// those after it as far as a lift of 0.1 m/s gets, or one that keeps skin that sinks faster within 10 mm
+/// more.
 std::vector<double> lifts(const std::vector<double>& depth_m, double allowed_m, double most_m, double fps);
 
 /// Raises frames whose skin lies below the floor (y = 0) by more than 5 mm, by 40 mm at most, see lifts.

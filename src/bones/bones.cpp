@@ -450,7 +450,7 @@ void ends_without_side(const Reader& reader, Bones& bones) {
 }
 
 /// Every source in turn, on the nodes that may be bones.
-Bones search(const Reader& reader, const Bones& given) {
+Bones search(const Reader& reader, const Bones& given, LegEnds ends = LegEnds::required) {
   Bones bones = given;
   const auto trunk = [&] {
     if (bones[Segment::pelvis] < 0) pelvis_by_name(reader, bones);
@@ -466,7 +466,7 @@ Bones search(const Reader& reader, const Bones& given) {
   trunk_by_topology(reader, bones);
   if (complete(bones)) return bones;
   const Character& character = reader.character;
-  const Bones shape = find_by_topology(character, rest_pose(character.skeleton), reader.allowed, bones);
+  const Bones shape = find_by_topology(character, rest_pose(character.skeleton), reader.allowed, bones, ends);
   if (!complete(shape)) return bones;
   for (int s = index(Segment::clavicle_l); s < kSegmentCount; ++s)
     if (bones.node[s] < 0 && shape.node[s] >= 0) bones.set(segment_at(s), shape.node[s], shape.by[s]);
@@ -511,7 +511,7 @@ void warn_of_another_figure(const Character& character, const Bones& bones, Diag
   const int top =
       common_ancestor(skeleton, bones[Segment::pelvis],
                       common_ancestor(skeleton, legs_fork(skeleton, bones), bones[Segment::head]));
-  if (top < 0 || skeleton.nodes[top].name.empty()) return;
+  if (top < 0) return;
   std::vector<char> allowed = may_be_bones(character, -1, false);
   const std::vector<char> taken = nodes_below(skeleton, top);
   for (std::size_t i = 0; i < allowed.size(); ++i) allowed[i] = allowed[i] && !taken[i];
@@ -594,8 +594,13 @@ Result<Bones> find_bones(const Character& character, const HumanoidOptions& opti
     const Reader reader(character, may_be_bones(character, root, second_round));
     bones = search(reader, given);
     if (complete(bones)) break;
-    if (second_round) add_stray_bones(reader, bones);
+    if (!second_round) continue;
+    const bool is_unnamed =
+        std::all_of(bones.node.begin(), bones.node.end(), [](int node) { return node < 0; });
+    if (is_unnamed) bones = search(reader, given, LegEnds::may_be_missing);
+    if (!complete(bones)) add_stray_bones(reader, bones);
   }
+  if (complete(bones)) add_feet_apart(character, bones);
   const bool is_complete = complete(bones);
   const std::string fault = is_complete ? misplaced(character, bones) : std::string();
   if (is_complete && fault.empty()) {
@@ -613,7 +618,7 @@ std::optional<Bones> find_bones_by_shape(const Character& character, const Human
   if (const Status status = apply_user_map(character, options, bones); !status) return std::nullopt;
   const int root = options.root.empty() ? -1 : character.skeleton.find(options.root);
   fill(bones, find_by_topology(character, rest_pose(character.skeleton), may_be_bones(character, root, false),
-                               bones));
+                               bones, LegEnds::required));
   return complete(bones) && misplaced(character, bones).empty() ? std::optional(bones) : std::nullopt;
 }
 

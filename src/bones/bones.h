@@ -52,10 +52,17 @@ Status apply_user_map(const Character& character, const HumanoidOptions& options
 /// bones are there and fit.
 std::string misplaced(const Character& character, const Bones& bones);
 
+/// Whether legs that are found by shape end in a joint of their own, an ankle. Arms have to: without wrists
+/// clavicles would be taken for upper arms.
+enum class LegEnds { required, may_be_missing };
+
 /// The bones by shape alone, of the `allowed` nodes: a trunk with two mirrored legs below and two mirrored
 /// arms above; limbs that `given` starts are followed from there. Empty (all -1) when there is none.
 Bones find_by_topology(const Character& character, const Pose& pose, const std::vector<char>& allowed,
-                       const Bones& given);
+                       const Bones& given, LegEnds ends);
+
+/// Where neither foot is known: what stands apart under both legs and carries the feet's skin or meshes.
+void add_feet_apart(const Character& character, Bones& bones);
 
 /// Lowest common ancestor (a node is its own ancestor); -1 when there is none.
 int common_ancestor(const Skeleton& skeleton, int a, int b);

@@ -17,6 +17,17 @@ struct Placement {
     return character.skeleton.is_ancestor(bones[upper], bones[lower]);
   }
 
+  /// A hand or foot that hangs on a limb that it is no end of.
+  std::string end_of_another() const {
+    for (const Segment end : {Segment::hand_l, Segment::hand_r, Segment::foot_l, Segment::foot_r})
+      for (const Segment upper :
+           {Segment::upperarm_l, Segment::upperarm_r, Segment::thigh_l, Segment::thigh_r})
+        if (bones[end] >= 0 && index(upper) != index(end) - 2 &&
+            is_at_or_below(character.skeleton, bones[upper], bones[end]))
+          return fmt::format("{} hangs below {}", text(end), text(upper));
+    return {};
+  }
+
   /// A bone that must hang below another; hands and feet may hang elsewhere (IK), but not above.
   std::string limb() const {
     constexpr std::pair<Segment, Segment> kMust[] = {
@@ -97,7 +108,8 @@ struct Placement {
 
 std::string misplaced(const Character& character, const Bones& bones) {
   const Placement placement{character, bones};
-  for (std::string (Placement::*check)() const : {&Placement::limb, &Placement::trunk, &Placement::spine})
+  for (std::string (Placement::*check)() const :
+       {&Placement::limb, &Placement::end_of_another, &Placement::trunk, &Placement::spine})
     if (std::string what = (placement.*check)(); !what.empty()) return what;
   return {};
 }

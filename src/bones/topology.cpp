@@ -11,10 +11,12 @@
 namespace ukemi {
 namespace {
 
-/// The three joints of a limb and its two bone lengths.
+/// The three joints of a limb and its two bone lengths. Without an ankle (`end` and `last` are -1) the lower
+/// bone is taken to go straight on and to be as long as the upper one.
 struct LimbShape {
   int upper = -1, middle = -1, end = -1, last = -1;
   double upper_length = 0.0, lower_length = 0.0;
+  Vec3 end_place = Vec3::Zero();
   double length() const { return upper_length + lower_length; }
 };
 
@@ -68,17 +70,30 @@ double limb_score(double upper, double lower) {
   return std::min(upper, lower) - 0.5 * std::abs(upper - lower);
 }
 
+LimbShape limb_of(const Tree& tree, int upper, int middle, int end, int last) {
+  return {
+      upper, middle, end, last, tree.between(upper, middle), tree.between(middle, end), tree.position[end]};
+}
+
+/// A limb of two joints with nothing below them.
+std::optional<LimbShape> limb_without_end(const Tree& tree, const std::vector<int>& path) {
+  if (path.size() != 2) return std::nullopt;
+  const Vec3 upper = tree.position[path[1]] - tree.position[path[0]];
+  return LimbShape{path[0], path[1], -1, -1, upper.norm(), upper.norm(), tree.position[path[1]] + upper};
+}
+
 /// Of all neighbouring triples along the path the one whose two bones are long and of like length: shoulder,
 /// elbow, wrist beat clavicle, shoulder, elbow and elbow, wrist, finger.
-std::optional<LimbShape> limb_at(const Tree& tree, int node) {
+std::optional<LimbShape> limb_at(const Tree& tree, int node, LegEnds ends) {
   const std::vector<int> path = joints_below(tree, node);
+  if (ends == LegEnds::may_be_missing && path.size() == 2) return limb_without_end(tree, path);
   std::optional<LimbShape> best;
   double best_score = 0.0;
   for (std::size_t i = 0; i + 2 < path.size(); ++i) {
     const double a = tree.between(path[i], path[i + 1]), b = tree.between(path[i + 1], path[i + 2]);
     if (limb_score(a, b) <= best_score) continue;
     best_score = limb_score(a, b);
-    best = LimbShape{path[i], path[i + 1], path[i + 2], path.back(), a, b};
+    best = limb_of(tree, path[i], path[i + 1], path[i + 2], path.back());
   }
   return best;
 }
@@ -93,7 +108,7 @@ std::optional<LimbShape> limb_from(const Tree& tree, int upper) {
       const double a = tree.between(upper, path[j]), b = tree.between(path[j], path[k]);
       if (limb_score(a, b) <= best_score + 1e-9 * a) continue;
       best_score = limb_score(a, b);
-      best = LimbShape{upper, path[j], path[k], path.back(), a, b};
+      best = limb_of(tree, upper, path[j], path[k], path.back());
     }
   return best;
 }
@@ -101,15 +116,16 @@ std::optional<LimbShape> limb_from(const Tree& tree, int upper) {
 struct Pair {
   LimbShape a, b;
   double length() const { return a.length() + b.length(); }
+  bool has_ends() const { return a.end >= 0 && b.end >= 0; }
 };
 
 bool alike(double a, double b) { return std::abs(a - b) <= 0.08 * std::max(a, b); }
 
 /// The longest two branches of a fork that mirror each other.
-std::vector<Pair> mirrored_pairs(const Tree& tree, int fork) {
+std::vector<Pair> mirrored_pairs(const Tree& tree, int fork, LegEnds ends) {
   std::vector<LimbShape> limbs;
   for (const int child : tree.children[fork])
-    if (const auto limb = limb_at(tree, child)) limbs.push_back(*limb);
+    if (const auto limb = limb_at(tree, child, ends)) limbs.push_back(*limb);
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < limbs.size(); ++i)
     for (std::size_t j = i + 1; j < limbs.size(); ++j) {
@@ -158,7 +174,7 @@ struct BodyPlan {
 bool plausible(const Tree& tree, const BodyPlan& shape) {
   const auto& p = tree.position;
   const Vec3 hips = 0.5 * (p[shape.legs.a.upper] + p[shape.legs.b.upper]);
-  const Vec3 feet = 0.5 * (p[shape.legs.a.end] + p[shape.legs.b.end]);
+  const Vec3 feet = 0.5 * (shape.legs.a.end_place + shape.legs.b.end_place);
   const Vec3 shoulders = 0.5 * (p[shape.arms.a.upper] + p[shape.arms.b.upper]);
   const Vec3 up = (hips - feet).normalized();
   const double trunk = (shoulders - hips).norm();
@@ -171,9 +187,11 @@ bool plausible(const Tree& tree, const BodyPlan& shape) {
 bool first_is_left(const Tree& tree, const BodyPlan& shape) {
   const auto& p = tree.position;
   const Vec3 hips = 0.5 * (p[shape.legs.a.upper] + p[shape.legs.b.upper]);
-  const Vec3 ankles = 0.5 * (p[shape.legs.a.end] + p[shape.legs.b.end]);
+  const Vec3 ankles = 0.5 * (shape.legs.a.end_place + shape.legs.b.end_place);
   const Vec3 up = (hips - ankles).normalized();
-  Vec3 forward = 0.5 * (p[shape.legs.a.last] + p[shape.legs.b.last]) - ankles;
+  Vec3 forward = Vec3::Zero();
+  if (shape.legs.a.last >= 0 && shape.legs.b.last >= 0)
+    forward = 0.5 * (p[shape.legs.a.last] + p[shape.legs.b.last]) - ankles;
   forward -= forward.dot(up) * up;
   if (forward.norm() < 0.02 * shape.legs.length())
     forward = std::abs(up.z()) > std::abs(up.y()) ? Vec3(0, -1, 0) : Vec3(0, 0, 1);
@@ -200,14 +218,14 @@ bool may_be_trunk(const Tree& tree, int lower, const Pair& legs, int upper, cons
   return !share_a_bone(legs, arms);
 }
 
-std::optional<BodyPlan> best_shape(const Tree& tree) {
+std::optional<BodyPlan> best_shape(const Tree& tree, LegEnds ends) {
   std::vector<std::pair<int, Pair>> forks;
   for (const int node : tree.skeleton.order)
-    for (const Pair& pair : mirrored_pairs(tree, node)) forks.emplace_back(node, pair);
+    for (const Pair& pair : mirrored_pairs(tree, node, ends)) forks.emplace_back(node, pair);
   std::optional<BodyPlan> best;
   for (const auto& [lower, legs] : forks)
     for (const auto& [upper, arms] : forks) {
-      if (!may_be_trunk(tree, lower, legs, upper, arms)) continue;
+      if (!arms.has_ends() || !may_be_trunk(tree, lower, legs, upper, arms)) continue;
       BodyPlan shape{lower, head_above(tree, upper, arms, legs), legs, arms, legs.length() + arms.length()};
       if (shape.head < 0 || !plausible(tree, shape)) continue;
       if (!best || shape.score > best->score) best = shape;
@@ -218,23 +236,28 @@ std::optional<BodyPlan> best_shape(const Tree& tree) {
 /// Of the joints of the skin, or of all nodes where the skin covers only part of the limbs; what is named the
 /// end of a bone is none.
 std::optional<BodyPlan> shape_of(const Character& character, const Tree& all, const Pose& pose,
-                                 const std::vector<char>& allowed) {
+                                 const std::vector<char>& allowed, LegEnds ends) {
   constexpr double kClearlyMore = 1.1;
-  if (character.skins.empty()) return best_shape(all);
+  if (character.skins.empty()) return best_shape(all, ends);
   std::vector<char> joints = skin_joints(character), bones = allowed;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     joints[i] = joints[i] && allowed[i];
     bones[i] = bones[i] && (joints[i] || !read_name(character.skeleton.nodes[i].name).end);
   }
-  const auto of_skin = best_shape(Tree(character, pose, joints));
-  const auto of_all = best_shape(Tree(character, pose, bones));
+  const auto of_skin = best_shape(Tree(character, pose, joints), ends);
+  const auto of_all = best_shape(Tree(character, pose, bones), ends);
   return of_skin && (!of_all || of_all->score < kClearlyMore * of_skin->score) ? of_skin : of_all;
 }
 
 void set_limb(Bones& bones, const LimbShape& limb, Segment upper, Segment middle, Segment end) {
   bones.set(upper, limb.upper, "topology");
   bones.set(middle, limb.middle, "topology");
-  bones.set(end, limb.end, "topology");
+  if (limb.end >= 0) bones.set(end, limb.end, "topology");
+}
+
+/// Whether a limb that is given goes through `limb`.
+bool is_given(const Bones& given, Segment upper, const LimbShape& limb) {
+  return given[upper] >= 0 && (given[upper] == limb.upper || given[upper] == limb.middle);
 }
 
 /// The limbs of a shape; left and right agree with the limbs that have names.
@@ -247,13 +270,25 @@ void set_limbs(const Tree& tree, const BodyPlan& shape, const Bones& given, Bone
   const Vec3 named =
       across(Segment::upperarm_l, Segment::upperarm_r) + across(Segment::thigh_l, Segment::thigh_r);
   const Vec3 a_to_b = p[shape.legs.b.upper] - p[shape.legs.a.upper];
-  const bool left_first = named.isZero() ? first_is_left(tree, shape) : a_to_b.dot(named) > 0.0;
+  const auto& [leg_a, leg_b] = shape.legs;
+  const bool a_is_left = is_given(given, Segment::thigh_l, leg_a) || is_given(given, Segment::thigh_r, leg_b);
+  const bool b_is_left = is_given(given, Segment::thigh_l, leg_b) || is_given(given, Segment::thigh_r, leg_a);
+  const bool left_first = a_is_left != b_is_left ? a_is_left
+                          : named.isZero()       ? first_is_left(tree, shape)
+                                                 : a_to_b.dot(named) > 0.0;
   const auto& [leg_l, leg_r] =
       left_first ? std::pair(shape.legs.a, shape.legs.b) : std::pair(shape.legs.b, shape.legs.a);
   const Vec3 right = p[leg_r.upper] - p[leg_l.upper];
   const bool arm_a_right = (p[shape.arms.a.upper] - p[shape.arms.b.upper]).dot(right) > 0.0;
-  const auto& [arm_l, arm_r] =
-      arm_a_right ? std::pair(shape.arms.b, shape.arms.a) : std::pair(shape.arms.a, shape.arms.b);
+  // An arm that has a name is on the side that it says, wherever it lies.
+  const auto& [arm_a, arm_b] = shape.arms;
+  const bool says_a_right =
+      is_given(given, Segment::upperarm_r, arm_a) || is_given(given, Segment::upperarm_l, arm_b);
+  const bool says_a_left =
+      is_given(given, Segment::upperarm_l, arm_a) || is_given(given, Segment::upperarm_r, arm_b);
+  const auto& [arm_l, arm_r] = (says_a_right != says_a_left ? says_a_right : arm_a_right)
+                                   ? std::pair(shape.arms.b, shape.arms.a)
+                                   : std::pair(shape.arms.a, shape.arms.b);
   set_limb(bones, leg_l, Segment::thigh_l, Segment::shank_l, Segment::foot_l);
   set_limb(bones, leg_r, Segment::thigh_r, Segment::shank_r, Segment::foot_r);
   set_limb(bones, arm_l, Segment::upperarm_l, Segment::forearm_l, Segment::hand_l);
@@ -286,10 +321,10 @@ void follow_given(const Tree& tree, const Bones& given, Bones& bones) {
 }  // namespace
 
 Bones find_by_topology(const Character& character, const Pose& pose, const std::vector<char>& allowed,
-                       const Bones& given) {
+                       const Bones& given, LegEnds ends) {
   const Tree tree(character, pose, allowed);
   Bones bones;
-  if (const auto shape = shape_of(character, tree, pose, allowed)) {
+  if (const auto shape = shape_of(character, tree, pose, allowed, ends)) {
     bones.set(Segment::pelvis, shape->pelvis, "topology");
     bones.set(Segment::head, shape->head, "topology");
     set_limbs(tree, *shape, given, bones);

@@ -43,7 +43,7 @@ void declare_out(Options& options, BakeRequest& request) {
       "colours of the pictures [default light]");
   options.path("--report", settings.report, "what the bake did, as JSON");
   options.path("--events", settings.events, "when what happens in the clip, as JSON: hit.events.json");
-  options.flag("--json", request.json, "the same JSON to stdout");
+  options.flag("--json", request.json, "the report as JSON to stdout");
   options.flag("--quiet", request.quiet, "nothing to stdout, no warnings");
 }
 

@@ -234,6 +234,17 @@ Status make_page(const BatchRequest& request, const BatchResult& result) {
   return review ? Status(Done{}) : Status(review.error());
 }
 
+/// What the page needs of each reaction is made where it was baked. A failure is told when the page is made.
+AfterBake parts_for_page(const BatchRequest& request) {
+  const BatchSettings& settings = request.settings;
+  if (!request.review || !settings.shard.whole() || !settings.merge.empty()) return {};
+  return [folder = settings.folder](const ReactionRecord& record, const BakeSettings& baked) {
+    ReviewPart part{record.character, record.name, {}, baked.report};
+    for (const fs::path& output : baked.outputs) part.outputs.push_back(output.generic_string());
+    static_cast<void>(make_review_part(folder, part));
+  };
+}
+
 int run_planned(const BatchRequest& request, const BatchPlan& plan) {
   const StopSignals signals;
   auto result = [&] {
@@ -267,6 +278,7 @@ int batch_command(const Arguments& arguments) {
   if (const auto status = status_at_once(options, arguments)) return *status;
   if (const Status status = check(request); !status) return print_error(status.error());
   request.settings.recipe = request.recipe;
+  request.settings.after = parts_for_page(request);
   request.settings.workers.memory_bytes = static_cast<std::size_t>(request.memory_mb * kMegabyte);
   const auto plan = plan_batch(request.settings);
   if (!plan) return print_error(plan.error());

@@ -81,6 +81,8 @@ Status check(const CompareRequest& request) {
   if (request.show > request.settings.hits)
     return usage_error(fmt::format("--show {} is beyond the last hit", request.show),
                        fmt::format("give a number from 1 to {}, or more --hits", request.settings.hits));
+  if (request.show > 0 && request.folder.empty())
+    return usage_error("--show needs a folder for its picture", "add -o DIR, or leave --show away");
   return request.folder.empty() ? Status(Done{}) : check_folder(request.folder);
 }
 

@@ -35,9 +35,10 @@ void declare(Options& options, JudgeClipSettings& settings) {
   options.group("what is judged");
   options.number("--impact", "S", judge.impact_s, Range{0.0, kLongest_s},
                  "time of the blow [default: as baked into the clip, else found]");
-  options.number("--from", "S", judge.from_s, Range{0.0, kLongest_s}, "the blow is looked for from here");
+  options.number("--from", "S", judge.from_s, Range{0.0, kLongest_s},
+                 "time from which on the blow is looked for");
   options.number("--to", "S", judge.to_s, Range{0.0, kLongest_s},
-                 "the clip is judged until here [default: the end]");
+                 "time until which the clip is judged [default: the end]");
   options.custom(
       "--mode", "stand|fall|getup", [&judge](const std::string& word) { return take_kind(word, judge); },
       "what the clip shows [default: found]");
@@ -67,6 +68,10 @@ int judge_command(const Arguments& arguments) {
   declare_humanoid_options(options, settings.humanoid);
   options.flag("--json", json, "as JSON");
   if (const auto status = status_at_once(options, arguments)) return *status;
+  if (settings.judge.impact_s && settings.judge.from_s)
+    return print_error(usage_error("--impact and --from exclude each other",
+                                   "give --impact where the time of the blow is known, --from where it is "
+                                   "looked for"));
 
   Diagnostics diagnostics;
   const auto judged = judge_clip(settings, diagnostics);

@@ -52,14 +52,14 @@ void declare_look(Options& options, RenderSettings& settings) {
   options.flag("--rom", settings.overlays.ranges,
                "each joint's range of motion as a cone: amber near its edge, red outside");
   options.text("--region", "NAME|FILE", settings.region, "whose ranges: human, diamond, box or a TOML file");
-  options.flag("--trail", settings.overlays.trail, "the way of the hips");
+  options.flag("--trail", settings.overlays.trail, "draws the path of the hips");
 }
 
 void declare_kinds(Options& options, RenderSettings& settings) {
   options.group("sheet");
-  options.whole("--cells", "N", settings.cells, 1, 100, "moments shown",
+  options.whole("--cells", "N", settings.cells, 1, 100, "how many moments a sheet shows",
                 "default 12; 6 a row for several files");
-  options.whole("--columns", "N", settings.columns, 1, 100, "cells side by side", "default 4");
+  options.whole("--columns", "N", settings.columns, 1, 100, "how many cells stand side by side", "default 4");
   options.group("moving picture");
   options.number("--fps", "HZ", settings.fps, Range{1.0, 60.0}, "pictures a second");
   options.number("--speed", "X", settings.speed, Range{0.01, 10.0},
@@ -76,8 +76,16 @@ Status check(const RenderRequest& request) {
   const RenderSettings& settings = request.settings;
   if (*kind != PictureKind::sheet && (settings.cells || settings.columns))
     return usage_error("--cells and --columns are for sheets", "ask for -o NAME.png, or leave them out");
-  if (*kind == PictureKind::sheet && settings.turn_s)
-    return usage_error("--turntable is for moving pictures", "ask for -o NAME.webp or -o NAME_####.png");
+  const RenderSettings defaults;
+  const auto moving_only = [&](const char* option) {
+    return usage_error(fmt::format("{} is for moving pictures", option),
+                       "ask for -o NAME.webp or -o NAME_####.png");
+  };
+  if (*kind == PictureKind::sheet && settings.turn_s) return moving_only("--turntable");
+  if (*kind == PictureKind::sheet && settings.fps != defaults.fps) return moving_only("--fps");
+  if (*kind == PictureKind::sheet && settings.speed != defaults.speed) return moving_only("--speed");
+  if (settings.region != defaults.region && !settings.overlays.ranges)
+    return usage_error("--region needs --rom", "add --rom to draw the ranges, or leave --region out");
   if (settings.size && settings.columns)
     return usage_error("--size and --columns exclude each other", "give one of them");
   return check_writable(request.output);

@@ -12,6 +12,7 @@
 #include "cli/console.h"
 #include "cli/options.h"
 #include "cli/settings_options.h"
+#include "prepare/setting_table.h"
 
 namespace ukemi {
 namespace {
@@ -51,7 +52,8 @@ void declare(Options& options, RomRequest& request) {
                "range of motion: human diamond box, or a TOML file");
   options.text("--check", "CLIP|FILE", settings.check,
                "a clip's path through the ranges: a clip of the mannequin, or the last clip of a file");
-  options.text("--clip", "NAME", settings.clip, "which clip of that file, by its name or #INDEX");
+  options.text("--clip", "NAME", settings.clip,
+               "with --check FILE: the clip of the file, by its name or #INDEX [default: the last]");
   options.custom(
       "--state", "AY,AZ", [&settings](const std::string& text) { return take_state(settings, text); },
       "a point of the joint, degrees, with the chords of the polygon through it");
@@ -67,6 +69,12 @@ void declare(Options& options, RomRequest& request) {
 Status check(const RomRequest& request) {
   if (request.max_excess_deg && !request.settings.check)
     return usage_error("--max-excess needs --check", "name a clip or a file to check");
+  if (!request.settings.check) {
+    const HumanoidOptions defaults;
+    for (const HumanoidSetting& setting : humanoid_settings())
+      if (setting.get(request.settings.humanoid) != setting.get(defaults))
+        return usage_error(fmt::format("--{} needs --check", setting.name), "name a clip or a file to check");
+  }
   if (request.output.empty()) return Done{};
   if (const Status status = check_picture_name(request.output); !status) return status.error();
   return check_writable(request.output);

@@ -20,15 +20,15 @@ Error other_skeleton(const std::filesystem::path& path, const std::string& joint
   return error_about(joint, input_error(path, what, "export the file again, or write a .glb instead"));
 }
 
-/// assimp numbers nodes whose name another has: "Bone001".
+/// assimp adds a number to a name that another node has: "Bone001".
 bool is_name_of(const std::string& node, const std::string& model) {
   const std::string name = load::utf8_name(model);
   return node.starts_with(name) && std::all_of(node.begin() + static_cast<std::ptrdiff_t>(name.size()),
                                                node.end(), [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Pairs nodes with models, both in order; a node takes the first model that has its name, exactly where
-/// there is one.
+/// Pairs nodes with models, both in order: a node takes the first model with exactly its name, else the first
+/// whose name assimp may have changed into it.
 void pair_children(const Skeleton& skeleton, const FbxModels& all, const std::vector<int>& nodes,
                    const std::vector<int>& models, std::vector<int>& model_of) {
   std::vector<bool> taken(models.size(), false);
@@ -105,7 +105,7 @@ ModelCurves curves_of(const NodesOfTree& nodes, int node, const FbxModel& model)
   return curves;
 }
 
-/// Makes `child` a child of `parent` instead of what it was a child of.
+/// Moves `child` from its present parent to `parent`.
 void move_below(FbxTree& tree, const FbxModels& all, std::int64_t child, std::int64_t parent) {
   const auto is_model = [&](std::int64_t id) {
     return id == 0 || std::any_of(all.models.begin(), all.models.end(),
@@ -153,7 +153,7 @@ void add_bone(FbxTree& tree, const std::string& name, std::int64_t parent, const
   count_definitions(tree, {{"Model", 1}, {"NodeAttribute", 1}});
 }
 
-/// Gives the tree the last node where it has none, between that node's parent and its only child.
+/// Adds the last node to the tree, between its parent and its only child, where the tree lacks it.
 void add_root_joint(const NodesOfTree& nodes, FbxTree& tree) {
   const Skeleton& skeleton = nodes.skeleton;
   const int last = skeleton.size() - 1;

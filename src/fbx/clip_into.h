@@ -9,7 +9,7 @@
 
 namespace ukemi {
 
-/// What stands for what, in the units and axes of the tree.
+/// The character's nodes and its motion in the units and axes of the tree.
 struct NodesOfTree {
   Skeleton skeleton;
   std::vector<Pose> frames;
@@ -18,9 +18,9 @@ struct NodesOfTree {
   std::vector<int> bones;  // keyed even where they rest
 };
 
-/// Finds each node's model, in the order of the hierarchy and by name; a node behind the others of which the
-/// tree knows nothing (a root joint) becomes a bone of its own. Errors: input, when a node that moves has no
-/// model or one that stands elsewhere. Limits that the clip leaves are switched off, with a warning.
+/// Finds the model of each node by name and by order in the hierarchy. A last node that the tree lacks (a
+/// root joint that was added) becomes a new bone. Errors: input, when a node that moves has no model or one
+/// that stands elsewhere. Limits that the clip leaves are switched off, with a warning.
 Status add_clip(const NodesOfTree& nodes, const Clip& clip, const std::filesystem::path& path, FbxTree& tree,
                 Diagnostics& diagnostics);
 

@@ -5,7 +5,7 @@
 namespace ukemi {
 namespace {
 
-// No stream is shorter than a 1032nd of what it holds; a file that claims more asks for memory in vain.
+// zlib compresses 1032 to 1 at best: a file that claims more is malformed, and gets no memory for it.
 constexpr std::size_t kMostRatio = 1032;
 
 }  // namespace

@@ -10,7 +10,8 @@
 namespace ukemi {
 namespace {
 
-// The code at the end is made from the time of creation; these three go together (as Blender writes them).
+// The code at the end of the file depends on the time of creation; these three values belong together (as
+// Blender writes them).
 constexpr std::array<std::uint8_t, 16> kFileId{0x28, 0xb3, 0x2a, 0xeb, 0xb6, 0x24, 0xcc, 0xc2,
                                                0xbf, 0xc8, 0xb0, 0x2a, 0xa9, 0x2b, 0xfc, 0xf1};
 constexpr std::array<std::uint8_t, 16> kFileCode{0xfa, 0xbc, 0xab, 0x09, 0xd0, 0xc8, 0xd4, 0x66,

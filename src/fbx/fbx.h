@@ -1,4 +1,4 @@
-// Clips out as binary FBX: the character's own file with a take more, or a document made for it.
+// Writes a clip as binary FBX: into the character's own file as one more take, or into a new document.
 #pragma once
 
 #include <cstdint>
@@ -27,16 +27,16 @@ struct FbxOptions {
 /// Whether the character comes from an FBX.
 bool is_fbx(const Character& character);
 
-/// With a source: its document with every record as it was, and one animation stack behind them. Local
+/// With a source, the result is its document, every record as it was, plus one animation stack. Local
 /// translations and Euler angles of the nodes that move and of all bones reproduce the clip at every frame to
 /// float precision: each model's rotation order, pre- and post-rotation, offsets and pivots are in force; the
 /// angles do not jump. Scalings get curves where the clip scales. Records are byte for byte those of the
 /// source, but for the counts of the definitions, the offsets, and limits of rotation and translation that
 /// the clip leaves: those are switched off, with a warning.
 ///
-/// Without: binary FBX 7.4 in centimetres, y up: models, bones, skinned meshes with normals, texture
-/// coordinates, colours and embedded textures, bind pose, the take. The character's earlier takes are left
-/// out.
+/// Without a source, the result is binary FBX 7.4 in centimetres, y up: models, bones, skinned meshes with
+/// normals, texture coordinates, colours and embedded textures, bind pose, the take. The character's earlier
+/// takes are left out.
 ///
 /// Errors: input (source is ASCII, older than 7.0, broken, or its models are not the character's nodes).
 Result<std::vector<std::uint8_t>> write_fbx(const Character& character, const Humanoid& humanoid,

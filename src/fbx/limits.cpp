@@ -19,7 +19,7 @@ Vec3 vector_of(const FbxRecord& properties, const std::string& name, const Vec3&
   return otherwise;
 }
 
-/// Zeroes the switch where it is on and the curve leaves what it guards; true when it did.
+/// Switches a limit off where it is on and the curve exceeds it; true when it did.
 bool lift(FbxRecord& properties, const std::string& name, bool leaves) {
   for (FbxRecord& record : properties.children) {
     if (text_at(record, 0) != name || record.properties.size() < 5) continue;
@@ -30,7 +30,7 @@ bool lift(FbxRecord& properties, const std::string& name, bool leaves) {
   return false;
 }
 
-/// Of rotation or translation: `quantity` is how the properties call it.
+/// All limits of one quantity: "Rotation" or "Translation", as the names of the properties begin.
 bool lift_limits_of(FbxRecord& properties, const std::string& quantity,
                     const std::array<std::vector<double>, 3>& curves) {
   if (curves[0].empty()) return false;

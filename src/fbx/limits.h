@@ -1,4 +1,4 @@
-// Limits that an FBX sets to what a model may turn and move by.
+// Limits of rotation and translation of an FBX's models.
 #pragma once
 
 #include <string>
@@ -9,8 +9,9 @@
 
 namespace ukemi {
 
-/// Switches off the limits that the take leaves (RotationMinX, TranslationMaxZ, ...): Autodesk's SDK, and so
-/// most programs, would bend the take to them. Those that it keeps to stay. Returns the names of the models.
+/// Switches off the limits that the take exceeds (RotationMinX, TranslationMaxZ, ...): Autodesk's SDK, and so
+/// most programs, would clamp the take to them. Other limits stay. Returns the names of the models that
+/// changed.
 std::vector<std::string> lift_limits(FbxTree& tree, const FbxTake& take);
 
 }  // namespace ukemi

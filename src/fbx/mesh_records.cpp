@@ -35,14 +35,14 @@ std::vector<MeshGroup> groups_of(const FbxScene& scene) {
   return groups;
 }
 
-/// cm_from_file as what it does to transforms: K M K^-1 with K the change of unit; roots are turned besides.
+/// A transform M of the file in centimetres: K M K^-1 with K the change of unit. Roots are turned as well.
 Affine in_cm(const Affine& transform, double scale) {
   Affine result = transform;
   result.translation() *= scale;
   return result;
 }
 
-/// Where the mesh stands so that its first bone is bound at its place: centimetres from (scaled) mesh space.
+/// Transform of the mesh that puts its first bone in its bind pose: centimetres from (scaled) mesh space.
 Affine world_from_mesh(const FbxScene& scene, const Skin& skin) {
   const std::vector<Affine> worlds = world_transforms(scene.skeleton, rest_pose(scene.skeleton));
   if (skin.joints.empty()) return Affine::Identity();

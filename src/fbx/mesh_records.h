@@ -10,7 +10,7 @@
 
 namespace ukemi {
 
-/// Where a node is once its skin binds it.
+/// A node's transform in the bind pose.
 struct BoundNode {
   int node = -1;
   Affine world_from_node = Affine::Identity();  // centimetres
@@ -22,7 +22,7 @@ struct BoundNode {
 std::vector<BoundNode> add_meshes(const FbxScene& scene, const std::vector<std::int64_t>& model_ids,
                                   FbxRecords& records);
 
-/// A node that only carries skinned meshes: they stand in the scene by themselves.
+/// Whether a node does nothing but carry skinned meshes. It gets no model: its meshes stand in the scene.
 bool is_shell(const FbxScene& scene, int node);
 
 /// A model record.

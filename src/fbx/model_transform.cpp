@@ -20,7 +20,7 @@ Quat rotation_of(const Vec3& angles_deg, int rotation_order) {
   return from_euler(in_order(angles_deg * radians(1.0), order), order);
 }
 
-/// What the turned and scaled part of the chain moves its origin to, without translation.
+/// Where the chain without its translation moves the origin to.
 Vec3 pivot_shift(const ModelTransform& model, const Quat& turn, const Vec3& scaling) {
   const Vec3 inside = model.scaling_offset + model.scaling_pivot - scaling.cwiseProduct(model.scaling_pivot);
   return model.rotation_offset + model.rotation_pivot + turn * (inside - model.rotation_pivot);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::string_view kClassMark{"\0\1", 2};
 
-/// Reads the values of "P" records over what is there.
+/// Overwrites properties with the values of "P" records.
 void read_properties(const FbxRecord* properties, ModelTransform& transform) {
   if (properties == nullptr) return;
   const std::pair<std::string_view, Vec3*> vectors[] = {{"Lcl Translation", &transform.translation},
@@ -35,7 +35,7 @@ void read_properties(const FbxRecord* properties, ModelTransform& transform) {
   }
 }
 
-/// What models have that say nothing else.
+/// Properties of models that do not state their own.
 ModelTransform template_of_models(const FbxTree& tree) {
   ModelTransform transform;
   const FbxRecord* definitions = section(tree, "Definitions");
@@ -48,7 +48,7 @@ ModelTransform template_of_models(const FbxTree& tree) {
   return transform;
 }
 
-/// Puts every model below the first of its parents that does not lie below it.
+/// Gives every model its first parent that is not one of its descendants.
 void connect(const FbxTree& tree, FbxModels& all) {
   const FbxRecord* connections = section(tree, "Connections");
   if (connections == nullptr) return;

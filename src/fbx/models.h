@@ -15,7 +15,7 @@ namespace ukemi {
 
 struct FbxModel {
   std::int64_t id = 0;
-  std::string name;  // as in the file, without the class behind it
+  std::string name;  // as in the file, without the class
   std::string type;  // "LimbNode", "Null", "Mesh", ...
   ModelTransform transform;
   std::vector<int> children;  // in order of the connections
@@ -30,15 +30,14 @@ struct FbxModels {
 /// Models that are not connected to the scene are left out of `roots` and of every `children`.
 FbxModels models_of(const FbxTree& tree);
 
-/// Name of an object, without the class behind it.
+/// Name of an object, without the class that follows it in the file.
 std::string object_title(const FbxRecord& object);
 
 /// The top-level record of that name; nullptr when there is none.
 const FbxRecord* section(const FbxTree& tree, std::string_view name);
 FbxRecord* section(FbxTree& tree, std::string_view name);
 
-/// Hands out ids that no object or document of the tree has: small ones, because some readers hold them as
-/// doubles.
+/// Hands out ids that are free in the tree. They are small, because some readers hold ids as doubles.
 class FbxIds {
  public:
   explicit FbxIds(const FbxTree& tree);
@@ -49,14 +48,14 @@ class FbxIds {
   std::int64_t last_ = 1'000'000;
 };
 
-/// Objects and connections on their way into a document.
+/// Objects and connections that are to be added to a document.
 struct FbxRecords {
   FbxIds& ids;
   std::vector<FbxRecord> objects;
   std::vector<FbxRecord> connections;
 };
 
-/// A name as it is written: never empty, without what parts names from classes.
+/// A name fit for a file: not empty, and without the characters that separate name and class.
 std::string fbx_name(const std::string& name, const std::string& otherwise);
 
 /// Name and class as binary files join them: "Hips\0\1Model".
@@ -71,7 +70,7 @@ FbxRecord connection(std::int64_t child, std::int64_t parent, std::string_view p
 FbxRecord property_record(std::string_view name, std::string_view type, std::string_view label,
                           std::string_view flags, std::vector<FbxProperty> values);
 
-/// Adds to what the document says of how many objects it has, by class.
+/// Raises the number of objects of a class that the document states.
 void count_definitions(FbxTree& tree, std::map<std::string, std::int32_t> added);
 
 }  // namespace ukemi

@@ -81,7 +81,7 @@ FbxRecord stack_record(std::int64_t id, const std::string& name, const FbxTake& 
                     {fbx_branch("Properties70", {}, std::move(properties))});
 }
 
-/// What readers from before the animation stacks go by.
+/// The list of takes, for readers that are older than animation stacks.
 FbxRecord old_take_record(const std::string& name, const FbxTake& take) {
   const std::vector<FbxProperty> span{fbx_long(take.ticks.front()), fbx_long(take.ticks.back())};
   return fbx_branch("Take", {fbx_text(name)},

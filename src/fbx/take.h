@@ -14,7 +14,8 @@ namespace ukemi {
 /// FBX counts time in these.
 inline constexpr double kTicksPerSecond = 46186158000.0;
 
-/// How one model moves: x, y and z of what is animated, one number per frame; empty: not animated.
+/// Motion of one model: x, y and z of each animated property, one number per frame; empty where it is not
+/// animated.
 struct ModelCurves {
   std::int64_t model = 0;
   std::array<std::vector<double>, 3> translation;
@@ -29,7 +30,8 @@ struct FbxTake {
 };
 
 /// Adds the take to the end of the objects, connections and takes; nothing that was there changes but the
-/// counts of the definitions. What rests has a key at either end. Its name is made unique among the stacks.
+/// counts of the definitions. A property that rests has a key at either end. Its name is made unique among
+/// the stacks.
 void add_take(FbxTree& tree, const FbxTake& take);
 
 }  // namespace ukemi

@@ -47,7 +47,7 @@ void put(Bytes& bytes, Number number) {
     bytes.push_back(byte);
 }
 
-/// Size of a number; 0 for what is none.
+/// Size of a number of that type; 0 where the type is no number.
 std::size_t scalar_bytes(char type) {
   switch (type) {
     case 'C':
@@ -164,7 +164,7 @@ class TreeReader {
     return {type, Bytes(bytes.begin(), bytes.end())};
   }
 
-  /// Bytes of the property at the cursor, behind its letter.
+  /// Bytes of the property at the cursor, without the letter of its type.
   std::uint64_t property_bytes(char type, std::size_t end) {
     if (const std::size_t scalar = scalar_bytes(type); scalar > 0) return scalar;
     if (type == 'S' || type == 'R') return 4 + std::uint64_t{peek(0, end)};
@@ -251,8 +251,8 @@ class TreeWriter {
 constexpr std::size_t kCodeBytes = 16;
 constexpr std::size_t kEndBytes = 4 + 120 + 16;
 
-/// The end: a code of 16 bytes, zeros, the version, 120 zeros, a mark of 16 bytes. There are so many zeros
-/// before the version that it is aligned, four at least; where four would do, 16 more.
+/// The end: a code of 16 bytes, zeros, the version, 120 zeros, a mark of 16 bytes. The zeros before the
+/// version align it; there are at least four, and 20 where four would do.
 Bytes padded_tail(const FbxTree& tree, std::size_t records_end) {
   const Bytes& tail = tree.tail;
   if (tail.size() < kCodeBytes + kEndBytes) return tail;

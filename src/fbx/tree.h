@@ -46,11 +46,11 @@ Result<std::vector<std::uint8_t>> write_fbx_tree(const FbxTree& tree, const std:
 /// The first child of that name; nullptr when there is none.
 const FbxRecord* child_of(const FbxRecord& record, std::string_view name);
 FbxRecord* child_of(FbxRecord& record, std::string_view name);
-/// Property `i`, or nothing where the record has fewer or it is of another kind.
+/// Property `i`; nothing where the record has no such property or it is of another kind.
 std::optional<std::string_view> text_at(const FbxRecord& record, std::size_t i);
 std::optional<std::int64_t> integer_at(const FbxRecord& record, std::size_t i);
 std::optional<double> number_at(const FbxRecord& record, std::size_t i);
-/// The numbers of an array, inflated; nothing where it is none, or malformed.
+/// The numbers of an array property, inflated; nothing where the property is no array, or malformed.
 std::optional<std::vector<double>> numbers_at(const FbxRecord& record, std::size_t i);
 
 // ---- making
@@ -60,7 +60,7 @@ FbxProperty fbx_bytes(std::span<const std::uint8_t> bytes);
 FbxProperty fbx_int(std::int32_t value);
 FbxProperty fbx_long(std::int64_t value);
 FbxProperty fbx_double(double value);
-/// Arrays, deflated where that is shorter.
+/// Array properties, deflated where that is shorter.
 FbxProperty fbx_array(const std::vector<double>& values);
 FbxProperty fbx_array(const std::vector<float>& values);
 FbxProperty fbx_array(const std::vector<std::int32_t>& values);

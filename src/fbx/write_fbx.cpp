@@ -20,8 +20,8 @@ std::set<int> skin_joints(const Character& character) {
   return joints;
 }
 
-/// Skin joints and what lies between them; where there is no skin, every node but a scaled root: Blender
-/// takes no scale of bones.
+/// Skin joints and the nodes between them. Without a skin every node but a scaled root is a bone, since
+/// Blender ignores the scale of bones.
 std::vector<int> bones_of(const Character& character, const Skeleton& skeleton) {
   std::set<int> bones = skin_joints(character);
   if (bones.empty())
@@ -58,8 +58,8 @@ LocalTransform converted(const LocalTransform& local, bool is_root, const Simila
   return result;
 }
 
-/// Blender's importer ties a bone to its parent where it stands at the tip that the parent is given, straight
-/// along its y axis, and then lets it turn only: bones that move stand a micrometre beside.
+/// Blender's importer connects a bone to its parent where it stands on the parent's tip, straight along its y
+/// axis, and lets a connected bone only turn. So bones that move are put a micrometre aside.
 void untie(NodesOfTree& nodes) {
   const Vec3 aside(1e-4, 0.0, 1e-4);  // cm
   for (const int bone : nodes.bones) {
@@ -91,8 +91,8 @@ bool carries_skin(const Character& character, int node) {
                      [node](const MeshPart& part) { return part.node == node && part.skin >= 0; });
 }
 
-/// The scene itself is no model that could move: what it was to do its children do. Skinned meshes stay, they
-/// follow their bones.
+/// The scene is no model and cannot move, so its motion goes to its children. Skinned meshes follow their
+/// bones and stay.
 void pass_on_motion_of_scene(const Character& character, NodesOfTree& nodes) {
   const std::vector<int> children = nodes.skeleton.children()[0];
   const LocalTransform rest = nodes.skeleton.nodes[0].rest;
@@ -146,7 +146,7 @@ FbxTree made_document(const Character& character, const Humanoid& humanoid, cons
   return make_fbx_document(scene);
 }
 
-/// Takes out what a clip has no use for, with all that hangs on it.
+/// Removes objects that a clip alone does not need, with everything connected to them.
 void keep_skeleton_only(FbxTree& tree) {
   const std::set<std::string> kept{"Model", "NodeAttribute"};
   FbxRecord* objects = section(tree, "Objects");

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "base/quantile.h"
 #include "bones/bones.h"
 #include "bones/names.h"
 #include "humanoid/assemble.h"
@@ -58,6 +59,16 @@ SkinExtent body_extent(const Character& character, const Humanoid& humanoid, con
   return {crown.found && soles.found, soles.min, crown.max};
 }
 
+/// Whether most bones' skin lies farther from them than a thigh is long, as where the bind pose has another
+/// scale than the skeleton: no single one need be astray.
+bool most_lie_elsewhere(std::vector<double> distances, double height) {
+  constexpr double kThighLength = 0.25;  // of the height
+  constexpr std::size_t kFewest = 6;     // bones that carry skin
+  if (distances.size() < kFewest) return false;
+  const std::size_t middle = distances.size() / 2;
+  return ranked(std::move(distances), middle) > kThighLength * height;
+}
+
 /// Nodes of the body whose skin lies far away from them: its bind pose has nothing to do with the skeleton.
 std::vector<char> skin_astray(const Character& character, const Humanoid& humanoid, const Landmarks& f,
                               double height, Diagnostics& diagnostics) {
@@ -66,8 +77,13 @@ std::vector<char> skin_astray(const Character& character, const Humanoid& humano
     for (const int node : segment.chain) is_bone[static_cast<std::size_t>(node)] = 1;
   std::size_t count = 0;
   CarriedSkin farthest;
-  for (const CarriedSkin& skin : carried_skin(character, f.world)) {
-    if (!is_astray(skin.distance, height)) continue;
+  const std::vector<CarriedSkin> carried = carried_skin(character, f.world);
+  std::vector<double> of_bones;
+  for (const CarriedSkin& skin : carried)
+    if (is_bone[static_cast<std::size_t>(skin.node)]) of_bones.push_back(skin.distance);
+  const bool all = most_lie_elsewhere(std::move(of_bones), height);
+  for (const CarriedSkin& skin : carried) {
+    if (!all && !is_astray(skin.distance, height)) continue;
     astray[static_cast<std::size_t>(skin.node)] = 1;
     if (!is_bone[static_cast<std::size_t>(skin.node)]) continue;  // a wing, a spear: as long as it likes
     ++count;
@@ -163,7 +179,9 @@ std::optional<double> stated_unit(const Character& character) {
 }
 
 Unit choose_unit(const Character& character, const HumanoidOptions& options, double height) {
-  if (options.height_m) return {*options.height_m / height, {}};
+  if (options.height_m)
+    return {*options.height_m / height,
+            options.metres_per_unit ? "--unit has no effect beside --height, which sets the size" : ""};
   if (options.metres_per_unit) return {*options.metres_per_unit, {}};
   const auto stated = stated_unit(character);
   const bool believed = stated && *stated * height >= kShortest && *stated * height <= kTallest;
@@ -406,6 +424,38 @@ void choose_sides(const Character& character, const Reference& reference, Humano
                                  by == "user" ? "you" : "they"));
 }
 
+/// Who said a bone's side: for the message where it lies on the other one.
+std::string_view authority(const std::string& by) {
+  if (by == "user") return "you win";
+  return by == "vrm" ? "VRM data wins" : "the names win";
+}
+
+/// A limb that lies on the other side of the body than its bones say.
+void warn_of_limbs_across(const Character& character, const Reference& reference, const Humanoid& humanoid,
+                          Diagnostics& diagnostics) {
+  constexpr double kClearlyAcross = 0.15;  // of the distance of the shoulders or hips, from the middle
+  const Landmarks figure(character, humanoid, reference.pose);
+  const Vec3 rise = (figure[Segment::head] - figure[Segment::pelvis]).normalized();
+  const Vec3 hips = figure.link(Segment::thigh_l, Segment::thigh_r);
+  const Vec3 shoulders = figure.link(Segment::upperarm_l, Segment::upperarm_r);
+  const Vec3 right = perpendicular(rise, hips + shoulders);
+  const Vec3 middle = figure[Segment::pelvis];
+  for (const auto& [left, limb] : {std::pair(Segment::upperarm_l, "arm"), {Segment::thigh_l, "leg"}}) {
+    for (const Segment upper : {left, mirror_of(left)}) {
+      const bool is_left = upper == left;
+      const double outwards = (is_left ? -1.0 : 1.0) * (figure[upper] - middle).dot(right);
+      if (outwards > -kClearlyAcross * std::max(hips.norm(), shoulders.norm())) continue;
+      const SegmentNodes& bone = humanoid.segments[index(upper)];
+      diagnostics.warn(
+          character.path.string(),
+          fmt::format("the {} {} ('{}') lies on the {} side of the body; {}: --map {}=NODE and --map {}=NODE "
+                      "say otherwise",
+                      is_left ? "left" : "right", limb, character.skeleton.label(bone.node()),
+                      is_left ? "right" : "left", authority(bone.by), name(upper), name(mirror_of(upper))));
+    }
+  }
+}
+
 /// Rotations below a scale that differs by axis shear: no clip of rotations moves such a body as a skeleton.
 void warn_of_uneven_scale(const Character& character, const Humanoid& humanoid, Diagnostics& diagnostics) {
   constexpr double kEven = 1.02;
@@ -433,6 +483,7 @@ Status find_frames(const Character& character, const HumanoidOptions& options, H
         "two legs with an arm on each side",
         "if the character is a human, check the bones with --map SEGMENT=NODE");
   choose_sides(character, reference, humanoid, diagnostics);
+  warn_of_limbs_across(character, reference, humanoid, diagnostics);
   warn_of_uneven_scale(character, humanoid, diagnostics);
   humanoid.rest_pose = class_of_rest(character, humanoid);
   FrameBuilder builder(character, humanoid, reference);

@@ -1,6 +1,7 @@
 #include "judge/clip_limits.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "humanoid/rotations.h"
 
@@ -36,6 +37,14 @@ void count(const RangeOfMotion& range, const PerSegment<Quat>& rotations, const 
   }
 }
 
+/// Of two excesses in radians, see RangeKeeper.
+bool judged_alike(double a, double b) {
+  const auto on_one_side = [&](double threshold_deg) {
+    return (degrees(a) > threshold_deg) == (degrees(b) > threshold_deg);
+  };
+  return std::abs(a - b) <= RangeKeeper::kKeyExcess && on_one_side(1.0) && on_one_side(5.0);
+}
+
 }  // namespace
 
 ClipLimits clip_limits(const Skeleton& skeleton, const SegmentFrames& frames, const RangeOfMotion& range,
@@ -64,10 +73,7 @@ RangeKeeper::RangeKeeper(const Skeleton& skeleton, const SegmentFrames& frames, 
     if (frames.node[index(child)] >= 0)
       nodes_[j] = nodes_between(skeleton, frames.node[index(child)], carrier(frames, parent_of(child)));
   }
-  for (const Pose& pose : whole) {
-    allowed_.push_back(excesses(pose));
-    for (double& outside : allowed_.back()) outside += kKeyExcess;
-  }
+  for (const Pose& pose : whole) outside_.push_back(excesses(pose));
 }
 
 PerJoint<double> RangeKeeper::excesses(const Pose& pose) const {
@@ -78,11 +84,11 @@ PerJoint<double> RangeKeeper::excesses(const Pose& pose) const {
   return result;
 }
 
-std::vector<int> RangeKeeper::too_far(std::size_t frame, const Pose& reduced) const {
+std::vector<int> RangeKeeper::to_mend(std::size_t frame, const Pose& reduced) const {
   const PerJoint<double> outside = excesses(reduced);
   std::vector<int> nodes;
   for (int j = 0; j < kJointCount; ++j)
-    if (outside[j] > allowed_[frame][j]) nodes.insert(nodes.end(), nodes_[j].begin(), nodes_[j].end());
+    if (!judged_alike(outside[j], outside_[frame][j])) nodes.insert(nodes.end(), nodes_[j].begin(), nodes_[j].end());
   return nodes;
 }
 

@@ -22,8 +22,10 @@ ClipLimits clip_limits(const Skeleton& skeleton, const SegmentFrames& frames, co
 ClipLimits clip_limits(const Humanoid& humanoid, const RangeOfMotion& range,
                        const std::vector<BodyPose>& poses);
 
-/// Keeps the joints of a clip inside their ranges while its keys are reduced: a joint may lie kKeyExcess
-/// outside, or farther than in the whole clip by so much where that is outside itself.
+/// Keeps a clip's joints as far outside their ranges as they are while its keys are reduced:
+///  1. how far a joint lies outside changes by kKeyExcess at most, up or down;
+///  2. what lies over 1 or 5 degrees outside is the same, so that figures of the reduced and of the whole clip
+///     count the same samples.
 class RangeKeeper {
  public:
   static constexpr double kKeyExcess = radians(0.05);
@@ -31,8 +33,8 @@ class RangeKeeper {
   RangeKeeper(const Skeleton& skeleton, const SegmentFrames& frames, const RangeOfMotion& range,
               const std::vector<Pose>& whole);
 
-  /// Nodes between the segments of joints that lie too far outside at a frame, see ExactRotations.
-  std::vector<int> too_far(std::size_t frame, const Pose& reduced) const;
+  /// Nodes between the segments of joints that break 1 or 2 at a frame, see ExactRotations.
+  std::vector<int> to_mend(std::size_t frame, const Pose& reduced) const;
 
  private:
   PerJoint<double> excesses(const Pose& pose) const;
@@ -40,8 +42,8 @@ class RangeKeeper {
   const Skeleton& skeleton_;
   SegmentFrames frames_;
   RangeOfMotion range_;
-  PerJoint<std::vector<int>> nodes_;       // that turn a joint; none where it is fused
-  std::vector<PerJoint<double>> allowed_;  // radians, per frame
+  PerJoint<std::vector<int>> nodes_;      // that turn a joint; none where it is fused
+  std::vector<PerJoint<double>> outside_;  // radians, per frame of the whole clip
 };
 
 }  // namespace ukemi

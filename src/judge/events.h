@@ -33,6 +33,9 @@ struct Step {
   double height_m = 0.0;  // of the ankle over its lower end
 };
 
+/// A foot that goes faster over the ground is in no place.
+inline constexpr double kPlantedSpeed_m_s = 0.3;
+
 /// Steps that begin in the window. A foot steps while the point midway between ankle and ball is faster than
 /// 0.18 m/s over the ground, if it reaches 0.35 m/s, goes 6 cm and takes 0.06 s.
 std::vector<Step> steps_in(const BodyCourse& body, const Window& window);

@@ -20,7 +20,7 @@ constexpr double kSwayed = 0.02, kSwaySpeed = 0.10;  // m, m/s: back again
 constexpr double kFlinched = 0.25;                   // share of the peak: back again
 constexpr double kHardPush = 0.5;                    // m/s: arms go out
 constexpr double kArmRise = 0.15, kArmAside = 0.25;  // m
-constexpr double kPlantedHeight = 0.03, kPlantedSpeed = 0.3, kPlantedFor_s = 0.1;
+constexpr double kPlantedHeight = 0.03, kPlantedFor_s = 0.1;
 constexpr double kFootOnFloor = 0.12, kHeel = 0.07, kToes = 0.08, kHalfFoot = 0.05, kAroundFeet = 0.05;  // m
 
 /// The head's way against the pelvis since the blow.
@@ -212,7 +212,7 @@ double slide_of(const BodyCourse& t, const Window& w, const LimbCourse& leg) {
   const double ankle = quantile(heights(leg.end), 0.05), ball = quantile(heights(leg.tip), 0.05);
   const std::vector<double> speed = horizontal_norms(rate_of(low_passed(leg.end, t.fps, 10.0), t.fps));
   const auto planted = [&](int f) {
-    return speed[f] < kPlantedSpeed &&
+    return speed[f] < kPlantedSpeed_m_s &&
            std::max(leg.end[f].y() - ankle, leg.tip[f].y() - ball) < kPlantedHeight;
   };
   double slide = 0.0;

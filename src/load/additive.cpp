@@ -36,7 +36,7 @@ void add(Track& track, const LocalTransform& base) {
   }
 }
 
-/// Differences that stand on the rest pose: what to add so that they stand on `pose`.
+/// What to add to differences from the rest pose so that they are differences from `pose`.
 Pose beyond_rest(const Skeleton& skeleton, Pose pose) {
   for (int i = 0; i < skeleton.size(); ++i) {
     const LocalTransform& rest = skeleton.nodes[i].rest;
@@ -53,7 +53,7 @@ std::vector<double> value_of(const LocalTransform& local, TrackPath path) {
   return {v.begin(), v.end()};
 }
 
-/// What does not differ has no track: it stays as in the pose. `none`: values that are no difference.
+/// A property without a track stays as in the pose. `none`: the values that mean no difference.
 void restore(const Pose& base, const Pose& none, Animation& animation) {
   std::vector<std::array<bool, 3>> has_track(base.size(), std::array<bool, 3>{});
   for (const Track& track : animation.tracks)

@@ -1,5 +1,5 @@
-// FBX, DAE and whatever else assimp reads: a child process makes a glTF document of it, and that is read like
-// any other.
+// FBX, DAE and whatever else assimp reads: a child process converts the file to a glTF document, which is
+// then read like any other.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -34,7 +34,7 @@ Result<SceneDocument> import(std::span<const std::uint8_t> bytes, const std::fil
   }
 }
 
-// The child's message: a line of JSON, then the document's JSON and binary, as long as that line says.
+// The child's message: a line of JSON that states two lengths, then the document's JSON and binary.
 
 Bytes packed(const Result<SceneDocument>& result, const Diagnostics& diagnostics) {
   Json head;
@@ -61,7 +61,7 @@ Bytes packed(const Result<SceneDocument>& result, const Diagnostics& diagnostics
   return bytes;
 }
 
-/// Throws nlohmann's exceptions for what no child of ours sends.
+/// Throws nlohmann's exceptions for messages that no child of this program sends.
 Result<SceneDocument> unpacked(const Bytes& bytes, const std::filesystem::path& path,
                                Diagnostics& diagnostics) {
   const auto line_end = std::find(bytes.begin(), bytes.end(), std::uint8_t{'\n'});

@@ -35,7 +35,7 @@ constexpr int kUint16 = 5123;
 constexpr int kUint32 = 5125;
 constexpr int kArrayBuffer = 34962;
 constexpr int kElementBuffer = 34963;
-// Keys nearer than this are one key: files hold some that are equal as float seconds.
+// Keys nearer than this are merged: some files hold keys whose times are equal as float seconds.
 constexpr double kMinKeyDistance_s = 1e-4;
 
 std::string name_of(const aiString& name) { return load::utf8_name({name.data, name.length}); }
@@ -93,8 +93,7 @@ class BufferWriter {
   Json accessors_ = Json::array();
 };
 
-/// Attributes of a primitive's vertices, those it has; files of polygons hold every corner as a vertex of its
-/// own.
+/// The attributes that a primitive's vertices have. In files of polygons every corner is a vertex of its own.
 struct Vertices {
   std::vector<float> positions;
   std::vector<float> normals;
@@ -103,7 +102,8 @@ struct Vertices {
   std::vector<float> weights;
   std::vector<std::uint32_t> indices;
 
-  /// Makes vertices that are equal in everything one; order of first use. Triangles without area go.
+  /// Merges vertices that are equal in all attributes, in order of first use, and drops triangles without
+  /// area.
   void merge_equal() {
     const std::size_t count = positions.size() / 3;
     std::vector<meshopt_Stream> streams;
@@ -128,7 +128,7 @@ struct Vertices {
   }
 
  private:
-  /// Triangles of which two corners have become one; a mesh of nothing else is left as it is.
+  /// Drops triangles of which two corners were merged, unless the mesh has no others.
   void drop_degenerate_triangles() {
     std::vector<std::uint32_t> kept;
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
@@ -206,8 +206,7 @@ class SceneConverter {
     return json;
   }
 
-  /// Assimp links bones and channels to nodes by name alone; of nodes that share one, those without a mesh
-  /// win.
+  /// Assimp links bones and channels to nodes by name alone; of nodes with one name, one without a mesh wins.
   void add_name(const aiNode& node, int index) {
     const auto [found, is_new] = node_named_.emplace(node.mName.C_Str(), index);
     if (!is_new && nodes_[found->second]->mNumMeshes > 0 && node.mNumMeshes == 0) found->second = index;
@@ -439,7 +438,7 @@ class SceneConverter {
     }
   }
 
-  /// Ticks before 0 that the animation starts at, or 0: glTF has no negative times.
+  /// How many ticks before 0 the animation starts; 0 if it does not. glTF has no negative times.
   static double first_key(const aiAnimation& animation) {
     double first = 0.0;
     const auto include = [&](const auto* keys, unsigned count) {
@@ -512,8 +511,8 @@ class SceneConverter {
     return std::nullopt;
   }
 
-  /// FBX states them in its metadata and assimp leaves the coordinates as they are; for DAE assimp has put
-  /// them into the root node's matrix.
+  /// Unit and axes: FBX states them in its metadata, and assimp leaves the coordinates as they are; for DAE
+  /// assimp puts them into the root node's matrix.
   void read_axes(load::SceneDocument& result) {
     if (load::same_word(path_.extension().string(), ".dae")) {
       result.metres_per_unit = 1.0;
@@ -553,7 +552,7 @@ class SceneConverter {
   Json animations_ = Json::array();
 };
 
-/// Takes every importer but the one for `extension` out, so that no other one is tried on the content.
+/// Removes every importer but the one for `extension`, so that assimp tries no other one on the content.
 void keep_only(Assimp::Importer& importer, const Assimp::BaseImporter* kept) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     Assimp::BaseImporter* other = importer.GetImporter(i);

@@ -1,4 +1,4 @@
-// What assimp reads, as a glTF document.
+// Converts what assimp reads to a glTF document.
 #pragma once
 
 #include <cstdint>

@@ -63,7 +63,8 @@ class Scanner {
     return trimmed(text_.substr(start, position_ - start));
   }
 
-  /// What is left of the line, without its end; goes to the next line. line() before the call is its number.
+  /// The rest of the line, without its end; the scanner goes to the next line. Its number is line() before
+  /// the call.
   std::string_view rest_of_line() {
     const std::size_t end = std::min(text_.find('\n', position_), text_.size());
     const std::string_view rest = text_.substr(position_, end - position_);
@@ -98,7 +99,7 @@ std::optional<BvhChannel> channel_named(std::string_view word) {
   return std::nullopt;
 }
 
-/// What the name of an End Site says where this program wrote it ("unit=0.01m,up=y,clip=eyJ1...").
+/// What this program writes into the name of an End Site ("unit=0.01m,up=y,clip=eyJ1...").
 struct FileMark {
   std::optional<double> metres_per_unit;
   std::string extras_json;
@@ -124,7 +125,7 @@ FileMark mark_in(std::string_view name) {
   return mark;
 }
 
-/// Reads one file; every function leaves the scanner behind what it read.
+/// Reads one file. Every function leaves the scanner just after what it read.
 class BvhReader {
  public:
   BvhReader(std::string_view text, const std::filesystem::path& path, Diagnostics& diagnostics)
@@ -139,7 +140,7 @@ class BvhReader {
   Skeleton skeleton;
   BvhSource source;
   double fps = 0.0;
-  FileMark mark;  // the last one that says something
+  FileMark mark;  // the last one that is not empty
 
  private:
   /// A joint whose closing brace has not come yet.
@@ -333,12 +334,18 @@ class BvhReader {
           fmt::format("has less than one frame a second (Frame Time {}); the format wants seconds, "
                       "as in 0.0333333",
                       quoted(*time)));
+    if (*seconds < 0.0005)
+      diagnostics_.warn(
+          path_.string(),
+          fmt::format("has {:.3g} frames a second (Frame Time {}); the format wants seconds, as in "
+                      "0.0333333",
+                      1.0 / *seconds, quoted(*time)));
     source.frame_time_s = *seconds;
     fps = rate_of(*time, *seconds);
     return Done{};
   }
 
-  /// 1 / seconds, or the common rate whose frame time `text` is rounded from.
+  /// 1 / seconds, or the common frame rate of which `text` is the rounded frame time.
   static double rate_of(std::string_view text, double seconds) {
     const std::size_t point = text.find('.');
     const bool plain = text.find_first_of("eE") == text.npos;
@@ -439,8 +446,8 @@ Vec3 translation_of(const std::vector<BvhChannel>& channels, const double* value
   return translation;
 }
 
-/// Whether the positions below the root lie around zero rather than around the offsets of their joints: they
-/// are meant to be added.
+/// Whether the positions of joints below the root lie around zero rather than around the joints' offsets:
+/// then they are meant to be added to the offsets.
 bool positions_lie_around_zero(const BvhSource& source, const Skeleton& skeleton) {
   constexpr std::size_t kMostRows = 200;
   constexpr double kNearZero = 0.25;

@@ -23,7 +23,7 @@ using load::JsonView;
 using load::Refusal;
 
 constexpr const char* kExportAgain = "export the file again";
-// Vertices of all instances together; keeps a small file from asking for gigabytes.
+// Most vertices of all instances together, so that a small file cannot ask for gigabytes.
 constexpr std::size_t kMaxVertices = std::size_t{1} << 25;
 constexpr int kMaxDepth = 1000;  // of the nodes
 constexpr float kLongest_s = 86400.0f;
@@ -129,7 +129,7 @@ class GltfReader {
     read_scenes(root);
   }
 
-  /// Bounds the time of every walk towards the root.
+  /// Refuses deeper trees, so that walks towards the root stay short.
   void check_depth() const {
     std::vector<int> depth(nodes_.size(), 1);
     for (const int node : character_.skeleton.order) {
@@ -233,7 +233,7 @@ class GltfReader {
     }
   }
 
-  /// Nothing for channels that move no node (morph weights, pointers) and for empty ones.
+  /// The track of a channel; nothing where it is empty or moves no node (morph weights, pointers).
   std::optional<Track> read_channel(const JsonView& channel, const std::vector<JsonView>& samplers,
                                     Accessors& accessors) const {
     const JsonView target = channel.at("target");

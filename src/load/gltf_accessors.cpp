@@ -13,7 +13,7 @@
 namespace ukemi::load {
 namespace {
 
-// More elements than any character needs; keeps a small file from asking for gigabytes of zeros.
+// More elements than any character needs, so that a small file cannot ask for gigabytes of zeros.
 constexpr std::int64_t kMaxElements = std::int64_t{1} << 25;
 
 struct ElementType {
@@ -128,7 +128,7 @@ void Accessors::read_view(const JsonView& json, const std::vector<std::vector<st
   const auto meshopt = extensions ? extensions->find("EXT_meshopt_compression") : std::nullopt;
   if (meshopt)
     read_compressed_view(*meshopt, view);
-  else if (!buffers[view.buffer].empty())  // one without data is refused where somebody reads it
+  else if (!buffers[view.buffer].empty())  // a buffer without data is refused when it is read
     check_view_range(json, view.buffer, view.offset, view.length);
   views_.push_back(std::move(view));
 }

@@ -25,7 +25,7 @@ std::string mime_of(const std::vector<std::uint8_t>& bytes, const std::string& s
   return stated;
 }
 
-/// The image of textures[i]; -1 when it names none. Extensions hold the sources of WebP and Basis images.
+/// The image of textures[i]; -1 when it names none. WebP and Basis images are named in extensions.
 int image_of(const JsonView& texture, std::size_t image_count) {
   const int image = texture.index("source", image_count, "images");
   const auto extensions = texture.find("extensions");

@@ -18,8 +18,7 @@ struct TexturedMaterial {
   Eigen::Affine2f uv_transform = Eigen::Affine2f::Identity();
 };
 
-/// Images that a file beside the document should hold and does not are left empty, with a warning. Throws
-/// Refusal.
+/// An image whose file is missing is left empty, with a warning. Throws Refusal.
 std::vector<Image> read_images(const JsonView& root, Accessors& accessors,
                                const std::filesystem::path& folder, const std::filesystem::path& path,
                                Diagnostics& diagnostics);

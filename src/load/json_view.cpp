@@ -24,8 +24,8 @@ const Json& json(const void* value) { return *static_cast<const Json*>(value); }
   throw Refusal("JSON: " + what, kFix, line, static_cast<int>(before.size() - line_start) + 1);
 }
 
-/// Refuses nesting that would exhaust the stack of whoever walks the document, and more values than its
-/// memory should hold: each but the first stands behind a bracket, a comma or a colon.
+/// Refuses nesting so deep that walking the document would exhaust the stack, and more than kMostValues
+/// values. They are counted by the bracket, comma or colon before each.
 void check_size(std::string_view text) {
   int depth = 0;
   std::size_t values = 1;

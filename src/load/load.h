@@ -1,4 +1,4 @@
-// Files in: .glb .gltf .vrm and .bvh read directly, everything else through assimp.
+// Reads files: .glb .gltf .vrm and .bvh directly, everything else through assimp.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ Result<Character> read_bvh(std::string_view text, const std::filesystem::path& p
                            Diagnostics& diagnostics);
 Result<Character> read_gltf(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
                             Diagnostics& diagnostics);
-/// FBX, DAE and whatever else assimp reads; the glTF document is written from its scene.
+/// Reads FBX, DAE and whatever else assimp reads, by way of a glTF document that is made of assimp's scene.
 Result<Character> read_with_assimp(std::span<const std::uint8_t> bytes, const std::filesystem::path& path,
                                    Diagnostics& diagnostics);
 

@@ -1,5 +1,5 @@
-// What one glTF may become in memory. Its parts may name the same bytes many times over, so that a small file
-// can ask for any amount.
+// Limits the memory that one glTF takes. Its parts may refer to the same bytes many times over, so a small
+// file can ask for any amount.
 #pragma once
 
 #include <cstddef>

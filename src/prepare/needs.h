@@ -4,13 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "base/character.h"
 #include "prepare/settings.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {
 
-/// What is said of the settings that differ from their defaults and have no effect: "--to has no effect
-/// without --recover". `scene`: the one in force.
+/// What is said of the settings that differ from their defaults and have no effect: "--return-to has no
+/// effect without --return". `scene`: the one in force.
 std::vector<std::string> idle_settings(const BakeSettings& settings, SceneKind scene);
+
+/// The same of settings that this character leaves without effect.
+std::vector<std::string> idle_settings(const BakeSettings& settings, const Character& character);
 
 }  // namespace ukemi

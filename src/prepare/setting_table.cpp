@@ -306,16 +306,17 @@ Settings hit_settings() {
           "aim-left", "M", Range{-5.0, 5.0},
           "ball and box: how far left of its centre the segment is hit, seen from where the blow comes",
           [](auto& s) -> auto& { return s.aim_left_m; }),
-      with_unset(
-          parsed<S>(
-              "scene", "ball|slope|fall|push|impulse|box|none|trip|slip|pull|explosion",
-              "what happens: a ball flies in, a ball rolls down a ramp, the body is tipped over or "
-              "dropped, a force acts for a time, momentum is given at once, a box slides in, nothing "
-              "happens, a "
-              "foot is caught, the feet slip away to where --from says, he is pulled there, all of him is "
-              "blown away",
-              [](auto& s) -> auto& { return s.scene; }, parse_scene),
-          "the preset's"),
+      with_unset(parsed<S>(
+                     "scene", "ball|slope|fall|push|impulse|box|none|trip|slip|pull|explosion",
+                     "what happens. ball: a ball flies in; slope: a ball rolls down a ramp; fall: the body "
+                     "is tipped over "
+                     "or dropped; push: a force acts for a time; impulse: momentum is given at once; box: a "
+                     "box slides in; "
+                     "none: nothing; trip: a foot is caught; slip: the feet slip away to where --from says; "
+                     "pull: the body "
+                     "is pulled there; explosion: the whole body is blown away",
+                     [](auto& s) -> auto& { return s.scene; }, parse_scene),
+                 "the preset's"),
       number<S>(
           "slope-deg", "DEG", Range{1.0, 60.0}, "slope of the ramp (--scene slope)",
           [](auto& s) -> auto& { return s.slope_deg; }),
@@ -421,18 +422,19 @@ Settings behaviour_settings_table() {
                  "alert, or limp with --rate fixed"),
       number<S>(
           "steps", "N", Range{0.0, 20.0},
-          "recovery steps at most; 0: the feet stay planted, and the stand pose leans into the blow",
+          "most recovery steps; 0: the feet stay planted, and the stand pose leans into the blow",
           [](auto& s) -> auto& { return s.most_steps; }),
       choice<S, std::optional<Wanted>>(
           "outcome", {{"auto", std::nullopt}, {"stand", Wanted::stand}, {"fall", Wanted::fall}},
-          "stand, fall: looked for among what a person might do (--search); auto: what becomes of the body",
+          "stand, fall: a take that ends so is searched for (--search); auto: whatever becomes of the body",
           [](auto& s) -> auto& { return s.outcome; }),
-      with_unset(
-          number<S>(
-              "search", "N", Range{1.0, 100.0},
-              "trials at most, of other feet, step times and tensions; the one most like a person is kept",
-              [](auto& s) -> auto& { return s.search; }),
-          "1, with --outcome 5"),
+      with_unset(number<S>(
+                     "search", "N", Range{1.0, 100.0},
+                     "most trials of a search over first foot, step times and tension; the trial that moves "
+                     "most like a "
+                     "person is kept",
+                     [](auto& s) -> auto& { return s.search; }),
+                 "1, with --outcome 5"),
       on_off<S>(
           "assist",
           "where no trial reaches the outcome, a force on the pelvis helps, as small as will do; the report "
@@ -456,7 +458,7 @@ Settings behaviour_settings_table() {
           "0.10, dazed 0.20"),
       knockout_setting(),
       on_off<S>(
-          "breath", "who lies and lives breathes, for 1 s before the clip ends",
+          "breath", "a living body that lies still breathes for 1 s before the clip ends",
           [](auto& s) -> auto& { return s.breathes; }, "lies still, and the clip ends with --hold"),
       bare(with_unset(number<S>(
                           "get-up", "S", Range{0.0, 60.0},
@@ -531,7 +533,7 @@ Settings method_settings() {
                      [](auto& s) -> auto& { return s.simulation.tone; }),
                  "0.3, or 0 with --rate fixed"),
       number<S>(
-          "tone-fade", "S", Range{0.0, 10.0, true}, "time in which that stiffness fades",
+          "tone-fade", "S", Range{0.0, 10.0, true}, "time in which the stiffness at first fades away",
           [](auto& s) -> auto& { return s.simulation.tone_fade_s; }),
       with_unset(number<S>(
                      "damping", "1_S", Range{0.0, 100.0}, "joint damping",
@@ -620,11 +622,11 @@ Settings out_settings() {
       on_off<S>(
           "all-joints", "keys for every joint of the skin in a glTF, two where it rests (an FBX has them)",
           [](auto& s) -> auto& { return s.all_joints; }),
-      with_unset(
-          choice<S, std::optional<double>>(
-              "bvh-unit", {{"cm", 0.01}, {"m", 1.0}}, "length unit of a BVH that does not come from a BVH",
-              [](auto& s) -> auto& { return s.bvh_metres_per_unit; }),
-          "cm"),
+      with_unset(choice<S, std::optional<double>>(
+                     "bvh-unit", {{"cm", 0.01}, {"m", 1.0}},
+                     "length unit of a .bvh that is written; a character from a BVH keeps that of its file",
+                     [](auto& s) -> auto& { return s.bvh_metres_per_unit; }),
+                 "cm"),
   };
 }
 

@@ -2,6 +2,9 @@
 
 #include <dlfcn.h>
 
+#include <cstdlib>
+#include <string_view>
+
 #include "base/errors.h"
 
 namespace ukemi {
@@ -12,7 +15,25 @@ SharedLibrary::~SharedLibrary() = default;
 
 void* SharedLibrary::find(const char* symbol) const { return handle_ ? dlsym(handle_, symbol) : nullptr; }
 
-Result<std::unique_ptr<Offscreen>> make_offscreen(OffscreenKind kind) {
+namespace {
+
+/// What the environment asks for, where nobody else asked.
+Result<OffscreenKind> in_force(OffscreenKind asked) {
+  const char* value = std::getenv("UKEMI_OFFSCREEN");
+  if (asked != OffscreenKind::any || value == nullptr || *value == '\0') return asked;
+  const std::string_view word = value;
+  if (word == "osmesa") return OffscreenKind::osmesa;
+  if (word == "egl") return OffscreenKind::egl;
+  return usage_error("UKEMI_OFFSCREEN is '" + std::string(word) + "'",
+                     "set it to osmesa or egl, or not at all");
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Offscreen>> make_offscreen(OffscreenKind asked) {
+  const auto chosen = in_force(asked);
+  if (!chosen) return chosen.error();
+  const OffscreenKind kind = *chosen;
   std::string osmesa_reason;
   std::string egl_reason;
   if (kind != OffscreenKind::egl)

@@ -8,6 +8,8 @@
 
 namespace ukemi {
 
+enum class OffscreenKind { any, osmesa, egl };
+
 /// Current on the thread that made it, until it is destroyed. The default framebuffer is of no use: draw into
 /// framebuffer objects.
 class Offscreen {
@@ -15,11 +17,12 @@ class Offscreen {
   virtual ~Offscreen() = default;
   /// The OpenGL function of that name, or null.
   virtual void* find_function(const char* name) const = 0;
+  /// osmesa or egl.
+  virtual OffscreenKind kind() const = 0;
 };
 
-enum class OffscreenKind { any, osmesa, egl };
-
-/// Tries OSMesa, then EGL. Errors: output, with what each of them lacks.
+/// Any: what UKEMI_OFFSCREEN in the environment names (osmesa, egl), else OSMesa, then EGL. Errors: output,
+/// with what each of them lacks; usage (another word in UKEMI_OFFSCREEN).
 Result<std::unique_ptr<Offscreen>> make_offscreen(OffscreenKind kind = OffscreenKind::any);
 
 /// Null, with the reason, when the library or the context is missing.

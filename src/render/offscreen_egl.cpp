@@ -49,6 +49,7 @@ class EglContext : public Offscreen {
   void* find_function(const char* name) const override {
     return reinterpret_cast<void*>(egl_.get_proc_address(name));
   }
+  OffscreenKind kind() const override { return OffscreenKind::egl; }
 
  private:
   bool open_display() {

@@ -45,6 +45,7 @@ class OsmesaContext : public Offscreen {
   void* find_function(const char* name) const override {
     return reinterpret_cast<void*>(get_proc_address_(name));
   }
+  OffscreenKind kind() const override { return OffscreenKind::osmesa; }
 
  private:
   SharedLibrary library_{"libOSMesa.so.8"};

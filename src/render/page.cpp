@@ -3,12 +3,6 @@
 #include "render/texture.h"
 
 namespace ukemi {
-namespace {
-
-constexpr int kLongestTextureSide = 1024;
-
-}  // namespace
-
 Result<Fonts> open_fonts() {
   auto regular = Font::open(FontStyle::regular);
   if (!regular) return regular.error();
@@ -17,13 +11,13 @@ Result<Fonts> open_fonts() {
   return Fonts{std::move(*regular), std::move(*bold)};
 }
 
-std::vector<Picture> decode_textures(const Character& character) {
+std::vector<Picture> decode_textures(const Character& character, int longest_side) {
   std::vector<Picture> pictures(character.images.size());
   for (const MeshPart& part : character.parts) {
     if (part.indices.empty() || part.uvs.empty() || part.material < 0) continue;
     const int image = character.materials[part.material].base_color_image;
     if (image >= 0 && pictures[image].rgba.empty())
-      pictures[image] = decode_image(character.images[image], kLongestTextureSide);
+      pictures[image] = decode_image(character.images[image], longest_side);
   }
   return pictures;
 }

@@ -24,7 +24,8 @@ struct Fonts {
 /// Errors: output, when a font file is missing.
 Result<Fonts> open_fonts();
 
-/// Images of a character by their index; only those that a visible part shows are decoded.
-std::vector<Picture> decode_textures(const Character& character);
+/// Images of a character by their index, halved until no side is longer; only those that a visible part shows
+/// are decoded.
+std::vector<Picture> decode_textures(const Character& character, int longest_side = 1024);
 
 }  // namespace ukemi

@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "render/gl.h"
+#include "render/lighting.h"
 #include "render/shaders.h"
 
 namespace ukemi {
@@ -16,42 +17,9 @@ namespace {
 constexpr int kSamples = 4;
 constexpr int kLightMapSize = 1024;
 constexpr int kFloorMapSize = 256;
-constexpr double kPenumbra_m = 0.035;  // of the key light's shadow on the floor
-constexpr double kContactBlur_m = 0.05;
-constexpr double kContactReach_m = 0.10;        // height at which contact darkness has fallen to 1/e
-constexpr double kKeyAzimuth = radians(-42.0);  // from the camera's side of the figure, to its left
-constexpr double kKeyElevation = radians(52.0);
-constexpr double kRimAzimuth = radians(150.0);
-constexpr double kRimElevation = radians(25.0);
-
-/// Towards a light that stands `azimuth` to the right of the camera as seen from the figure.
-Vec3 towards(const Camera& camera, double azimuth, double elevation) {
-  const Vec3 back = camera.world_from_camera * Vec3::UnitZ();
-  const double turn = std::atan2(back.x(), back.z()) + azimuth;
-  return {std::sin(turn) * std::cos(elevation), std::sin(elevation), std::cos(turn) * std::cos(elevation)};
-}
-
-struct Bounds {
-  Eigen::Vector3f low = Eigen::Vector3f::Constant(1e30f);
-  Eigen::Vector3f high = Eigen::Vector3f::Constant(-1e30f);
-};
-
-Bounds shadow_bounds(const Geometry& geometry, const Vec3& focus) {
-  Bounds bounds;
-  for (const Piece& piece : geometry.pieces) {
-    if (!piece.surface.casts_shadow) continue;
-    for (std::uint32_t i = piece.first; i < piece.first + piece.count; ++i) {
-      const Eigen::Vector3f& p = geometry.vertices[geometry.indices[i]].position;
-      bounds.low = bounds.low.cwiseMin(p);
-      bounds.high = bounds.high.cwiseMax(p);
-    }
-  }
-  if (bounds.low.x() > bounds.high.x()) bounds.low = bounds.high = focus.cast<float>();
-  return bounds;
-}
 
 /// Orthographic view from the key light that holds the bounds.
-Eigen::Matrix4f light_from_world(const Bounds& bounds, const Vec3& to_key) {
+Eigen::Matrix4f light_from_world(const ShadowBounds& bounds, const Vec3& to_key) {
   const Eigen::Vector3d centre = 0.5 * (bounds.low + bounds.high).cast<double>();
   const double radius = 0.5 * (bounds.high - bounds.low).cast<double>().norm() + 0.05;
   const Quat turn = Quat::FromTwoVectors(to_key, Vec3::UnitZ());
@@ -60,44 +28,6 @@ Eigen::Matrix4f light_from_world(const Bounds& bounds, const Vec3& to_key) {
   matrix.topLeftCorner<3, 3>() = scale * turn.toRotationMatrix();
   matrix.topRightCorner<3, 1>() = -(matrix.topLeftCorner<3, 3>() * centre);
   return matrix.cast<float>();
-}
-
-/// Square of the floor that holds the shadow: centre x, centre z, half side.
-Vec3 floor_area(const Bounds& bounds, double floor_y, const Vec3& to_key) {
-  const double shift = std::max(0.0, bounds.high.y() - floor_y);
-  Eigen::AlignedBox2d area;
-  for (const double height : {0.0, shift}) {
-    const Vec2 slide = -height / to_key.y() * Vec2(to_key.x(), to_key.z());
-    area.extend(Vec2(bounds.low.x(), bounds.low.z()) + slide);
-    area.extend(Vec2(bounds.high.x(), bounds.high.z()) + slide);
-  }
-  const Vec2 centre = area.center();
-  return {centre.x(), centre.y(), 0.5 * area.sizes().maxCoeff() + 3.0 * (kPenumbra_m + kContactBlur_m)};
-}
-
-/// One pass of a box filter of 2 radius + 1 along rows; the picture comes out transposed.
-void box_blur_transposed(const std::vector<float>& from, std::vector<float>& to, int size, int radius) {
-  const float weight = 1.0f / static_cast<float>(2 * radius + 1);
-  for (int y = 0; y < size; ++y) {
-    const float* row = from.data() + static_cast<std::size_t>(y) * size;
-    float sum = 0.0f;
-    for (int x = 0; x < radius && x < size; ++x) sum += row[x];
-    for (int x = 0; x < size; ++x) {
-      if (x + radius < size) sum += row[x + radius];
-      to[static_cast<std::size_t>(x) * size + y] = sum * weight;
-      if (x >= radius) sum -= row[x - radius];
-    }
-  }
-}
-
-/// Three box filters: close to a Gaussian.
-void blur(std::vector<float>& map, int size, double radius_px) {
-  const int radius = std::max(1, static_cast<int>(std::lround(radius_px)));
-  std::vector<float> other(map.size());
-  for (int pass = 0; pass < 3; ++pass) {
-    box_blur_transposed(map, other, size, radius);
-    box_blur_transposed(other, map, size, radius);
-  }
 }
 
 }  // namespace
@@ -472,7 +402,7 @@ Picture Painter::draw(const FrameGeometry& frame, const StageView& stage) {
   const State& s = *state_;
   const Gl& gl = s.gl;
   const Vec3 to_key = towards(stage.camera, kKeyAzimuth, kKeyElevation);
-  const Bounds bounds = shadow_bounds(frame.solid, stage.focus);
+  const ShadowBounds bounds = shadow_bounds(frame.solid, stage.focus);
   const Eigen::Matrix4f light = light_from_world(bounds, to_key);
   const Vec3 area = floor_area(bounds, stage.floor_y, to_key);
 

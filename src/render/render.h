@@ -26,8 +26,12 @@ struct Picture {
 
 Result<std::vector<std::uint8_t>> encode_png(const Picture& picture);
 
+/// Quick: more bytes in less time.
+enum class Effort { quick, thorough };
+
 /// Lossy, `quality` 0 to 100.
-Result<std::vector<std::uint8_t>> encode_webp(const Picture& picture, double quality);
+Result<std::vector<std::uint8_t>> encode_webp(const Picture& picture, double quality,
+                                              Effort effort = Effort::thorough);
 
 enum class ThemeKind { light, dark };
 
@@ -82,15 +86,13 @@ struct SheetOptions {
 /// than 10000 pixels a side).
 Result<SheetOptions> fit_sheet(SheetOptions options, int page_width, int page_height);
 
-struct ThumbnailOptions {
-  int width = 288;
-  int height = 216;
-  ThemeKind theme = ThemeKind::light;
+struct Thumbnails {
+  Picture light, dark;
 };
 
-/// A reaction in one small picture: the figure half-way through its motion, see-through where it starts, and
-/// the blow. Errors: as render_sheet.
-Result<Picture> render_thumbnail(const Shot& shot, const ThumbnailOptions& options);
+/// A reaction in one small picture, in both themes: the figure half-way through its motion, see-through where
+/// it starts, and the blow. Errors: input, as render_sheet.
+Result<Thumbnails> render_thumbnails(const Shot& shot, int width, int height);
 
 /// Contact sheet: the same camera in every cell, each labelled with its time and phase; below them the speed
 /// of the motion over time and a scale.

@@ -337,14 +337,13 @@ Result<ReviewClip> review_clip(const fs::path& folder, const ReviewSource& sourc
       rom_json(*character, *humanoid, sampled, animation.extras_json,
                range_of(told, source.clip.string(), diagnostics), told.widened, result.clip_excess_max_deg);
   result.clip_json = dumped(json);
-  result.character_json = review_mesh_json(*character, *humanoid);
+  result.mesh = review_mesh(*character, *humanoid);
   const ReviewedClip reviewed{*character, *humanoid, sampled,
                               floor_m,    point,     told.direction.value_or(Vec3::Zero())};
-  for (const ThemeKind theme : {ThemeKind::light, ThemeKind::dark}) {
-    auto thumbnail = review_thumbnail(reviewed, theme);
-    if (!thumbnail) return thumbnail.error();
-    (theme == ThemeKind::light ? result.thumbnail_light : result.thumbnail_dark) = std::move(*thumbnail);
-  }
+  auto thumbnails = review_thumbnails(reviewed);
+  if (!thumbnails) return thumbnails.error();
+  result.thumbnail_light = std::move(thumbnails->light);
+  result.thumbnail_dark = std::move(thumbnails->dark);
   return result;
 }
 

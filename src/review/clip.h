@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "review/mesh.h"
 #include "review/sources.h"
 
 namespace ukemi {
@@ -15,8 +17,8 @@ namespace ukemi {
 /// JSON in ASCII without "<", so that it may stand in any script. Arrays of numbers are base64 of
 /// little-endian values.
 struct ReviewClip {
-  std::string clip_json;       // without the key "character"
-  std::string character_json;  // skeleton and meshes; equal for equal characters
+  std::string clip_json;                                      // without the key "character"
+  std::shared_ptr<const ReviewMesh> mesh;                     // skeleton and meshes
   std::vector<std::uint8_t> thumbnail_light, thumbnail_dark;  // WebP
   double duration_s = 0.0;
   double travel_m = 0.0;           // of the hips over the ground, from first to last frame

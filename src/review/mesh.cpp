@@ -1,10 +1,14 @@
 #include "review/mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "base/digest.h"
 #include "export/container.h"
 #include "export/stick_mesh.h"
 #include "review/json.h"
@@ -77,25 +81,36 @@ const char* name_of(Material::Alpha alpha) {
   return "opaque";
 }
 
-/// Materials, and the images that visible parts show.
-void add_materials(const Character& character, Json& json) {
-  std::map<int, int> images;  // of the character, of the page
-  json["images"] = Json::array();
+/// `page_image`: of the character's images, the number that the page knows each by; -1 for the others.
+Json materials_json(const Character& character, const std::map<int, int>& page_image) {
+  Json materials = Json::array();
+  for (const Material& material : character.materials) {
+    const auto image = page_image.find(material.base_color_image);
+    materials.push_back({{"color", material.base_color},
+                         {"image", image == page_image.end() ? -1 : image->second},
+                         {"alpha", name_of(material.alpha)},
+                         {"cutoff", material.alpha_cutoff},
+                         {"double_sided", material.double_sided}});
+  }
+  return materials;
+}
+
+/// Those that visible parts show.
+std::map<int, int> page_images(const Character& character) {
+  std::map<int, int> images;
   for (const MeshPart& part : character.parts) {
     const int image = part.material < 0 ? -1 : character.materials[part.material].base_color_image;
-    if (image < 0 || part.uvs.empty() || images.contains(image)) continue;
-    images.emplace(image, static_cast<int>(images.size()));
+    if (image >= 0 && !part.uvs.empty()) images.emplace(image, static_cast<int>(images.size()));
+  }
+  return images;
+}
+
+void add_images(const Character& character, const std::map<int, int>& page_image, Json& json) {
+  std::vector<int> images(page_image.size());
+  for (const auto& [image, number] : page_image) images[static_cast<std::size_t>(number)] = image;
+  json["images"] = Json::array();
+  for (const int image : images)
     json["images"].push_back(data_uri(character.images[image].mime, character.images[image].bytes));
-  }
-  json["materials"] = Json::array();
-  for (const Material& material : character.materials) {
-    const auto image = images.find(material.base_color_image);
-    json["materials"].push_back({{"color", material.base_color},
-                                 {"image", image == images.end() ? -1 : image->second},
-                                 {"alpha", name_of(material.alpha)},
-                                 {"cutoff", material.alpha_cutoff},
-                                 {"double_sided", material.double_sided}});
-  }
 }
 
 /// The simple figure as one part with a skin.
@@ -118,7 +133,40 @@ void add_figure(const Character& character, const Humanoid& humanoid, Json& json
 
 }  // namespace
 
-std::string review_mesh_json(const Character& character, const Humanoid& humanoid) {
+namespace {
+
+template <typename Values>
+void add_values(Digest& digest, const Values& values) {
+  digest.add_field(
+      std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(*values.data())));
+}
+
+/// Of all that mesh_json reads of parts, skins and images beside what stands in short_json.
+std::string digest_of_arrays(const Character& character) {
+  Digest digest;
+  for (const MeshPart& part : character.parts) {
+    add_values(digest, part.positions);
+    add_values(digest, part.normals);
+    add_values(digest, part.uvs);
+    add_values(digest, part.colors);
+    add_values(digest, part.joints);
+    add_values(digest, part.weights);
+    add_values(digest, part.indices);
+    add_values(digest, std::array{part.node, part.skin, part.material});
+  }
+  for (const Skin& skin : character.skins) {
+    add_values(digest, skin.joints);
+    for (const Affine& bind : skin.inverse_bind) add_values(digest, bind.matrix());
+  }
+  for (const Image& image : character.images) {
+    digest.add_field(image.mime);
+    add_values(digest, image.bytes);
+  }
+  return digest.hex();
+}
+
+/// Everything but the long arrays.
+Json short_json(const Character& character, const Humanoid& humanoid) {
   const Similarity& world = humanoid.world_from_file;
   Json json;
   json["world_from_file"] = {{"scale", world.scale},
@@ -128,7 +176,13 @@ std::string review_mesh_json(const Character& character, const Humanoid& humanoi
   json["nodes"] = nodes_json(character.skeleton);
   json["parts"] = Json::array();
   json["skins"] = Json::array();
-  add_materials(character, json);
+  json["images"] = Json::array();
+  json["materials"] = materials_json(character, page_images(character));
+  return json;
+}
+
+std::string mesh_json(const Character& character, const Humanoid& humanoid, Json json) {
+  add_images(character, page_images(character), json);
   if (character.parts.empty()) {
     add_figure(character, humanoid, json);
   } else {
@@ -138,6 +192,22 @@ std::string review_mesh_json(const Character& character, const Humanoid& humanoi
       json["skins"].push_back(skin_json(skin.joints, skin.inverse_bind));
   }
   return script_safe(json.dump(-1, ' ', true, Json::error_handler_t::replace));
+}
+
+}  // namespace
+
+std::shared_ptr<const ReviewMesh> review_mesh(const Character& character, const Humanoid& humanoid) {
+  thread_local std::string kept_key;
+  thread_local std::shared_ptr<const ReviewMesh> kept;
+  Json json = short_json(character, humanoid);
+  std::string key = json.dump(-1, ' ', true, Json::error_handler_t::replace) + digest_of_arrays(character);
+  if (character.parts.empty() || key != kept_key) {
+    ReviewMesh mesh{mesh_json(character, humanoid, std::move(json)), {}};
+    mesh.hash = content_hash(mesh.json);
+    kept = std::make_shared<const ReviewMesh>(std::move(mesh));
+    kept_key = std::move(key);
+  }
+  return kept;
 }
 
 }  // namespace ukemi

@@ -9,6 +9,8 @@
 #include <set>
 #include <vector>
 
+#include "base/build_id.h"
+#include "base/digest.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/or_null.h"
@@ -31,6 +33,7 @@ constexpr const char* kPageFolder = "review";
 constexpr const char* kProgramFiles[] = {"review.js", "review.css"};
 constexpr const char* kTableFile = "reactions.js";
 constexpr const char* kManifestKey = "manifest_sha256";
+constexpr const char* kAheadFolder = ".ukemi/page";  // parts made before the page
 constexpr std::size_t kLongestReadableName = 60;
 
 /// What became of one source.
@@ -40,6 +43,9 @@ struct Made {
   std::string error;
   Diagnostics diagnostics;
 };
+
+std::string character_path_of(const Made& made) { return "characters/" + made.character_file + ".js"; }
+std::string clip_path_of(const Made& made) { return "clips/" + made.clip_file + ".js"; }
 
 /// A name that is a file name everywhere and needs no escaping in an address.
 std::string readable(std::string_view text) {
@@ -62,7 +68,8 @@ std::string script(std::string_view kind, const std::string& key, const std::str
 /// The page's folder, and the files that this page put into it.
 class PageFolder {
  public:
-  explicit PageFolder(fs::path folder) : folder_(std::move(folder)) {}
+  /// `shared`: by processes that write the same, so that a file that is there need not be written.
+  explicit PageFolder(fs::path folder, bool shared = false) : folder_(std::move(folder)), shared_(shared) {}
 
   /// Errors: output.
   Status make() {
@@ -86,6 +93,22 @@ class PageFolder {
     return write_file(folder_ / relative, content);
   }
 
+  /// Whether this page has the file; from any thread.
+  bool has(const std::string& relative) {
+    std::error_code error;
+    const std::lock_guard lock(mutex_);
+    return written_.contains(relative) || (shared_ && fs::exists(folder_ / relative, error));
+  }
+
+  /// Takes over a file that lies in the folder already, or comes from another one of the same disk.
+  bool take(const std::string& relative, const fs::path& from) {
+    std::error_code error;
+    fs::rename(from / relative, folder_ / relative, error);
+    const std::lock_guard lock(mutex_);
+    if (!error) written_.insert(relative);
+    return written_.contains(relative);
+  }
+
   /// Removes what an earlier page left and this one does not use.
   void remove_leftovers() const {
     std::error_code error;
@@ -97,6 +120,7 @@ class PageFolder {
 
  private:
   fs::path folder_;
+  bool shared_;
   std::mutex mutex_;
   std::set<std::string> written_;
 };
@@ -132,32 +156,107 @@ std::string_view text_of(const std::vector<std::uint8_t>& bytes) {
 /// Writes a clip's files. Errors: output.
 Status write_clip(const ReviewSource& source, PageFolder& page, Made& made) {
   ReviewClip& clip = *made.clip;
-  made.character_file = fmt::format("{}-{}", readable(source.character), content_hash(clip.character_json));
+  made.character_file = fmt::format("{}-{}", readable(source.character), clip.mesh->hash);
   const std::string json =
       fmt::format("{{\"character\":\"{}\",{}", made.character_file, clip.clip_json.substr(1));
   const std::string stem = readable(source.character + "-" + source.name);
   made.clip_file = fmt::format("{}-{}", stem, content_hash(json));
-  if (Status status = page.write("characters/" + made.character_file + ".js",
-                                 script("character", made.character_file, clip.character_json));
-      !status)
-    return status;
-  if (Status status = page.write("clips/" + made.clip_file + ".js", script("clip", made.clip_file, json));
-      !status)
+  const std::string character_file = character_path_of(made);
+  if (!page.has(character_file))
+    if (Status status = page.write(character_file, script("character", made.character_file, clip.mesh->json));
+        !status)
+      return status;
+  if (Status status = page.write(clip_path_of(made), script("clip", made.clip_file, json)); !status)
     return status;
   made.thumbnail_light = "thumbnails/" + stem + "-" + content_hash(text_of(clip.thumbnail_light)) + ".webp";
   made.thumbnail_dark = "thumbnails/" + stem + "-" + content_hash(text_of(clip.thumbnail_dark)) + ".webp";
   if (Status status = page.write(made.thumbnail_light, clip.thumbnail_light); !status) return status;
   if (Status status = page.write(made.thumbnail_dark, clip.thumbnail_dark); !status) return status;
   clip.clip_json.clear();
-  clip.character_json.clear();
+  clip.mesh.reset();
   clip.thumbnail_light.clear();
   clip.thumbnail_dark.clear();
   return Done{};
 }
 
+// ---- parts made ahead
+
+fs::path ahead_folder(const fs::path& folder) { return folder / kAheadFolder; }
+
+fs::path ahead_file(const fs::path& folder, const ReviewSource& source) {
+  return ahead_folder(folder) / (readable(source.character + "-" + source.name) + "-" +
+                                 content_hash(source.character + "/" + source.name) + ".json");
+}
+
+/// Of what a part is made from; "" where the clip cannot be read.
+std::string inputs_of(const fs::path& folder, const ReviewSource& source) {
+  Digest digest;
+  digest.add_field(build_id());
+  for (const fs::path& path : {source.clip, source.report}) {
+    digest.add_field(path.generic_string());
+    if (path.empty()) continue;
+    const auto bytes = read_file(folder / path, kMaxTableBytes);
+    if (!bytes) return "";
+    digest.add(*bytes);
+  }
+  return digest.hex();
+}
+
+std::string part_text(const std::string& inputs, const Made& made) {
+  Json json{{"inputs", inputs},
+            {"clip", made.clip_file},
+            {"character", made.character_file},
+            {"light", made.thumbnail_light},
+            {"dark", made.thumbnail_dark},
+            {"duration_s", made.clip->duration_s},
+            {"travel_m", made.clip->travel_m},
+            {"excess_max_deg", made.clip->clip_excess_max_deg},
+            {"warnings", Json::array()}};
+  for (const Warning& warning : made.diagnostics.warnings())
+    json["warnings"].push_back({warning.subject, warning.what});
+  return json.dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+/// What make_review_part left; nothing where it does not belong to these inputs.
+std::optional<Made> part_in(const fs::path& file, const std::string& inputs) {
+  const auto bytes = read_file(file, kMaxAssetBytes);
+  const Json json = bytes ? Json::parse(*bytes, nullptr, false) : Json();
+  if (!json.is_object() || inputs.empty() || json.value("inputs", "") != inputs) return std::nullopt;
+  try {
+    Made made;
+    made.clip_file = json.at("clip");
+    made.character_file = json.at("character");
+    made.thumbnail_light = json.at("light");
+    made.thumbnail_dark = json.at("dark");
+    made.clip.emplace();
+    made.clip->duration_s = json.at("duration_s");
+    made.clip->travel_m = json.at("travel_m");
+    made.clip->clip_excess_max_deg = json.at("excess_max_deg");
+    for (const Json& warning : json.at("warnings")) made.diagnostics.warn(warning.at(0), warning.at(1));
+    return made;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+/// Moves a part that was made ahead into the page. False where there is none that fits.
+bool take_part(const fs::path& folder, const ReviewSource& source, PageFolder& page, Made& made) {
+  const fs::path file = ahead_file(folder, source);
+  std::error_code error;
+  if (!fs::exists(file, error)) return false;
+  auto part = part_in(file, inputs_of(folder, source));
+  if (!part) return false;
+  for (const std::string& name :
+       {character_path_of(*part), clip_path_of(*part), part->thumbnail_light, part->thumbnail_dark})
+    if (!page.take(name, ahead_folder(folder))) return false;
+  made = std::move(*part);
+  return true;
+}
+
 /// Loads and writes one reaction; a clip that cannot be read is not an error of the page. Errors: output.
 Status make_one(const fs::path& folder, const ReviewSource& source, PageFolder& page, Made& made) {
   if (source.clip.empty() || source.status == "failed") return Done{};
+  if (take_part(folder, source, page, made)) return Done{};
   auto clip = review_clip(folder, source, made.diagnostics);
   if (!clip) {
     if (clip.error().kind == ErrorKind::output) return clip.error();
@@ -298,6 +397,21 @@ bool review_is_current(const fs::path& folder) {
                       [&](const auto& source) { return is_newer(source.clip) || is_newer(source.report); });
 }
 
+Status make_review_part(const fs::path& folder, const ReviewPart& part) {
+  ReviewSource source;
+  source.character = part.character;
+  source.name = part.name;
+  source.clip = clip_among(part.outputs);
+  source.report = part.report;
+  PageFolder page(ahead_folder(folder), true);
+  if (const Status status = page.make(); !status) return status;
+  return without_exceptions([&]() -> Status {
+    Made made;
+    if (const Status status = make_one(folder, source, page, made); !status || !made.clip) return status;
+    return write_file(ahead_file(folder, source), part_text(inputs_of(folder, source), made));
+  });
+}
+
 Result<Review> write_review(const fs::path& folder, const ReviewSettings& settings, Diagnostics& diagnostics,
                             const std::function<void(int, int)>& progress) {
   const auto sources = review_sources(folder, diagnostics);
@@ -317,6 +431,7 @@ Result<Review> write_review(const fs::path& folder, const ReviewSettings& settin
     return status.error();
   }
   page.remove_leftovers();
+  fs::remove_all(ahead_folder(folder), error);
   for (const Made& one : made)
     for (const Warning& warning : one.diagnostics.warnings()) diagnostics.warn(warning.subject, warning.what);
   return counted(folder, made);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 
@@ -32,6 +33,18 @@ struct Review {
 Result<Review> write_review(const std::filesystem::path& folder, const ReviewSettings& settings,
                             Diagnostics& diagnostics,
                             const std::function<void(int done, int total)>& progress = {});
+
+/// One reaction of a batch that is under way. Paths are relative to its folder.
+struct ReviewPart {
+  std::string character, name;  // as the manifest will say
+  std::vector<std::string> outputs;
+  std::filesystem::path report;  // "" where there is none
+};
+
+/// Makes ahead what write_review will need of a reaction whose files are written, and keeps it in
+/// FOLDER/.ukemi/page: a batch's workers do so while others simulate. The page has the same bytes without it.
+/// Errors: output.
+Status make_review_part(const std::filesystem::path& folder, const ReviewPart& part);
 
 /// Whether FOLDER has the page that write_review would make of its manifest now: made from the same manifest
 /// by the same program, and no clip or report is newer than it.

@@ -71,14 +71,6 @@ Json figures_of_report(const Json& report) {
   return json;
 }
 
-/// The output that plays best: .glb, else .gltf, else .bvh.
-fs::path clip_among(const std::vector<std::string>& outputs) {
-  for (const OutputFormat wanted : {OutputFormat::glb, OutputFormat::gltf, OutputFormat::bvh})
-    for (const std::string& output : outputs)
-      if (output_format(output) == wanted) return output;
-  return {};
-}
-
 /// Nothing for what lies elsewhere: a manifest cannot make the page show other places of the disk.
 fs::path path_at(const Json& entry, const char* key, const fs::path& folder) {
   const fs::path path = text_at(entry, {key});
@@ -233,6 +225,13 @@ Result<ReviewSources> sources_of_folder(const fs::path& folder, Diagnostics& dia
 }
 
 }  // namespace
+
+fs::path clip_among(const std::vector<std::string>& outputs) {
+  for (const OutputFormat wanted : {OutputFormat::glb, OutputFormat::gltf, OutputFormat::bvh})
+    for (const std::string& output : outputs)
+      if (output_format(output) == wanted) return output;
+  return {};
+}
 
 Result<ReviewSources> review_sources(const fs::path& folder, Diagnostics& diagnostics) {
   std::error_code error;

@@ -34,6 +34,9 @@ struct ReviewSources {
 /// Errors: see write_review.
 Result<ReviewSources> review_sources(const std::filesystem::path& folder, Diagnostics& diagnostics);
 
+/// Which of a reaction's outputs is played: the first .glb, else .gltf, else .bvh; "" for none.
+std::filesystem::path clip_among(const std::vector<std::string>& outputs);
+
 /// SHA-256 of the folder's manifest; "" where there is none.
 std::string manifest_digest(const std::filesystem::path& folder);
 

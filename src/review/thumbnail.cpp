@@ -1,6 +1,7 @@
 #include "review/thumbnail.h"
 
 #include <optional>
+#include <utility>
 
 #include "body/body.h"
 #include "clip/start.h"
@@ -8,8 +9,8 @@
 namespace ukemi {
 namespace {
 
-constexpr int kWidth = 400;  // twice a small card's, for screens with fine pixels
-constexpr int kHeight = 300;
+constexpr int kWidth = 320;  // more than a small card's, for screens with fine pixels
+constexpr int kHeight = 240;
 constexpr double kQuality = 80.0;
 
 /// What is drawn where a character has no mesh.
@@ -32,7 +33,7 @@ Result<Shapes> shapes_of(const Character& character, const Humanoid& humanoid, c
 
 }  // namespace
 
-Result<std::vector<std::uint8_t>> review_thumbnail(const ReviewedClip& reviewed, ThemeKind theme) {
+Result<ReviewThumbnails> review_thumbnails(const ReviewedClip& reviewed) {
   const auto& [character, humanoid, given, floor_m, point, direction] = reviewed;
   const Vec3 down(0.0, -floor_m, 0.0);
   Clip clip = given;
@@ -51,9 +52,13 @@ Result<std::vector<std::uint8_t>> review_thumbnail(const ReviewedClip& reviewed,
     shot.body = &*shapes->body;
     shot.segments = &shapes->segments;
   }
-  const auto picture = render_thumbnail(shot, {kWidth, kHeight, theme});
-  if (!picture) return picture.error();
-  return encode_webp(*picture, kQuality);
+  const auto pictures = render_thumbnails(shot, kWidth, kHeight);
+  if (!pictures) return pictures.error();
+  auto light = encode_webp(pictures->light, kQuality, Effort::quick);
+  if (!light) return light.error();
+  auto dark = encode_webp(pictures->dark, kQuality, Effort::quick);
+  if (!dark) return dark.error();
+  return ReviewThumbnails{std::move(*light), std::move(*dark)};
 }
 
 }  // namespace ukemi

@@ -22,7 +22,12 @@ struct ReviewedClip {
   Vec3 impact_direction = Vec3::Zero();  // zero: unknown
 };
 
-/// A WebP of the clip half-way through its motion. Errors: output.
-Result<std::vector<std::uint8_t>> review_thumbnail(const ReviewedClip& reviewed, ThemeKind theme);
+/// WebP of both themes.
+struct ReviewThumbnails {
+  std::vector<std::uint8_t> light, dark;
+};
+
+/// The clip half-way through its motion. Errors: output.
+Result<ReviewThumbnails> review_thumbnails(const ReviewedClip& reviewed);
 
 }  // namespace ukemi

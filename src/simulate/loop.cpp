@@ -12,6 +12,7 @@
 #include "simulate/check.h"
 #include "simulate/figures.h"
 #include "simulate/frames.h"
+#include "simulate/guarded.h"
 #include "simulate/rest.h"
 #include "simulate/stepping.h"
 
@@ -37,7 +38,7 @@ class Simulation {
                  physics_settings_of(input.settings, stepping_)),
         recorder_(physics_.model(), input.settings.gravity),
         step_length_(stepping_),
-        controller_(input.controller ? input.controller() : nullptr),
+        controller_(guarded(input.controller)),
         direction_(input.scene.direction) {}
 
   void run(Diagnostics& diagnostics);
@@ -228,6 +229,12 @@ Error error_of(const Diverged& diverged) {
                        "use a weaker blow, a plausible --mass and --height, or --rate fixed:960"));
 }
 
+Error error_of(const ControllerFailure& failure, double time_s) {
+  return error_about(failure.joint,
+                     internal_error(fmt::format("the behaviour {} (at {:.3f} s)", failure.what, time_s),
+                                    "report this with the command line; --behaviour limp does without it"));
+}
+
 /// A run, and what came apart in it.
 struct Attempt {
   Trial trial;
@@ -254,9 +261,15 @@ Result<Attempt> try_scene(const SimulationInput& input, const RangeOfMotion* jud
   } catch (const OdeFailure& failure) {
     trial.failure = simulation_error(fmt::format("the physics engine cannot begin: {}", failure.what()),
                                      "use a weaker blow, or a plausible --mass and --height");
+  } catch (const ControllerFailure& failure) {
+    trial.failure = error_of(failure, simulation ? simulation->time_s() : 0.0);
   }
   if (!simulation) return *trial.failure;
-  trial.result = simulation->result();
+  try {
+    trial.result = simulation->result();
+  } catch (const ControllerFailure& failure) {
+    return error_of(failure, simulation->time_s());
+  }
   trial.excesses = simulation->excesses();
   trial.simulated_s = simulation->time_s();
   if (simulation->torn()) attempt.torn = error_of(*simulation->torn());

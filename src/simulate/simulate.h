@@ -95,10 +95,10 @@ struct SimulationInput {
 };
 
 /// Runs the scene on the body. The body holds still until the blow arrives at time 0: the ball starts
-/// touching. A run that diverges (a segment faster than 100 m/s, a joint apart by more than 11.5 % of the
-/// height, a failure of the engine) is run again at twice the rate, with a warning. Errors: simulation
-/// (diverged again: segment, time, speed), usage (settings out of range), input (body, start or range that
-/// nothing can be run with).
+/// touching. A run that diverges (a segment over 100 m/s, a joint apart by 11.5 % of the height) or fails
+/// is run again at twice the rate, with a warning. Errors: simulation (diverged: segment, time, speed), usage
+/// (settings out of range), input (body, start or range of no use), internal (a behaviour that throws, or
+/// asks for what no muscle can give: joint, time).
 Result<SimulationResult> simulate(const SimulationInput& input, Diagnostics& diagnostics);
 
 /// A run as an experiment sees it: judged in a range of its own choice, and a failure is a result.

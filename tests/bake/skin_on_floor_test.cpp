@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/bake.h"
-#include "body/ground.h"
+#include "bake/skin_lift.h"
 #include "load/load.h"
 #include "support/extra_data.h"
 
@@ -78,16 +78,6 @@ TEST(SkinOnFloor, OfStylisedCharacters) {
     expect_above_the_floor(file, character_of(*data / "characters" / file));
 }
 
-TEST(SkinOnFloor, DeepSkinIsLiftedAsFastAsItIsDeep) {
-  const std::vector<double> depth(60, 0.109);
-  const std::vector<double> little = lifts(depth, 0.009, 0.04, 60.0), all = lifts(depth, 0.009, 0.25, 60.0);
-  EXPECT_NEAR(little.back(), 0.04, 1e-9);
-  EXPECT_NEAR(little[12], 0.02, 1e-9);
-  EXPECT_NEAR(all.back(), 0.1, 1e-9);
-  EXPECT_NEAR(all[12], 0.05, 1e-9);
-  EXPECT_EQ(all[0], 0.0);
-}
-
 TEST(SkinOnFloor, ShapesThatCoverTheMeshHaveNoPointsOfTheirOwn) {
   const auto points_of = [](const Character& character) {
     BakeSettings settings;
@@ -116,6 +106,50 @@ TEST(SkinOnFloor, WhatABindPoseThrowsFarAwayHoldsNobodyUp) {
   EXPECT_FALSE(baked->behaviour.fall_begins_s);
   EXPECT_FALSE(baked->figures.first_ground_contact_s);
   EXPECT_LT(baked->skin.max.body_m, 0.02);
+}
+
+/// The figure's bake, its frames but the first so far below where it stands.
+struct Lowered {
+  Character character = figure();
+  Prepared prepared;
+  Timeline timeline;
+  SkinOverFloor skin;
+
+  explicit Lowered(double down_m, Diagnostics diagnostics = {})
+      : prepared(*prepare_bake(character, {}, diagnostics)),
+        skin(character, prepared.humanoid, prepared.body, prepared.start.pose, prepared.start.segments) {
+    timeline.clip.fps = timeline.trajectory.fps = 60.0;
+    for (int f = 0; f < 60; ++f) {
+      const Vec3 down(0.0, f == 0 ? 0.0 : -down_m, 0.0);
+      timeline.clip.frames.push_back(moved(character.skeleton, prepared.humanoid, prepared.start.pose, down));
+      BodyPose segments = prepared.start.state.segments;
+      for (Rigid& segment : segments) segment.translation += down;
+      timeline.trajectory.frames.push_back(segments);
+    }
+  }
+};
+
+TEST(SkinOnFloor, DepthsAreTheLargestAndTheLast) {
+  Lowered figure(0.10);
+  const double stand_m = figure.skin.depth(figure.timeline.clip.frames.front()).body_m;
+  ASSERT_LT(stand_m, 0.005);
+  figure.timeline.clip.frames.push_back(moved(figure.character.skeleton, figure.prepared.humanoid,
+                                              figure.prepared.start.pose, Vec3(0.0, -0.03, 0.0)));
+  const SkinOnFloor read = skin_on_floor(figure.skin, figure.timeline.clip.frames);
+  EXPECT_NEAR(read.max.body_m, 0.10, 0.005);
+  EXPECT_NEAR(read.end_m, 0.03, 0.005);
+  EXPECT_NEAR(read.max.body_m - read.end_m, 0.07, 1e-6);
+}
+
+TEST(SkinOnFloor, BlendedSkinIsLiftedOutOfTheFloorHoweverDeepItLies) {
+  Lowered figure(0.15);
+  const double depth_m = figure.skin.depth(figure.timeline.clip.frames.back()).body_m;
+  const double lifted_m =
+      lift_blended_skin(figure.prepared.actor(figure.character), figure.skin, figure.timeline);
+  EXPECT_NEAR(lifted_m, depth_m - 0.009, 1e-6);
+  EXPECT_NEAR(figure.skin.depth(figure.timeline.clip.frames.back()).body_m, 0.009, 1e-6);
+  EXPECT_NEAR(figure.timeline.trajectory.frames.back()[0].translation.y(),
+              figure.prepared.start.state.segments[0].translation.y() - 0.15 + lifted_m, 1e-9);
 }
 
 /// Trousers that reach the floor beside the feet.

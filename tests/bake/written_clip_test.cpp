@@ -1,10 +1,14 @@
 // What a bake writes, read back: its poses, and its joints in the range that it carries.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <set>
 
 #include "bake/bake.h"
+#include "bake/response.h"
 #include "check/difference.h"
 #include "clip/frames.h"
 #include "judge/rom_figures.h"
@@ -288,10 +292,84 @@ TEST(WrittenClip, ABvhCarriesTheRangeAndTheSidesOfItsBake) {
   EXPECT_GE(marks.size(), 2u);
 }
 
+/// What a report says of the floor, taken from the written clip at 240 Hz.
+struct OnFloor {
+  double depth_m = 0.0, end_m = 0.0;  // of the skin
+  double slide_m = 0.0;               // of a foot
+};
+
+/// Node of the file for each of the character's, by name; nothing where one is missing or has a namesake.
+std::optional<std::vector<int>> nodes_in_file(const Character& character, const Character& file) {
+  std::map<std::string, int> count;
+  for (const Node& node : character.skeleton.nodes) ++count[node.name];
+  std::vector<int> nodes;
+  for (const Node& node : character.skeleton.nodes) {
+    nodes.push_back(file.skeleton.find(node.name));
+    if (nodes.back() < 0 || count[node.name] > 1) return std::nullopt;
+  }
+  return nodes;
+}
+
+/// Nothing where the file's nodes cannot be told apart.
+std::optional<OnFloor> on_floor(const Character& character, const Written& w) {
+  constexpr double kRate_hz = 240.0;
+  const auto nodes = nodes_in_file(character, w.file);
+  if (!nodes) return std::nullopt;
+  const Prepared& prepared = w.baked.outcome.prepared;
+  const Actor actor = prepared.actor(character);
+  const SegmentFrames frames = frames_of(actor);
+  const Animation& clip = w.file.animations.back();
+  std::vector<Pose> poses;
+  Trajectory trajectory;
+  trajectory.fps = kRate_hz;
+  for (int f = 0; f <= std::lround(clip.duration_s() * kRate_hz); ++f) {
+    const Pose in_file = sample(w.file.skeleton, clip, clip.start_s + f / kRate_hz);
+    Pose& pose = poses.emplace_back();
+    for (const int node : *nodes) pose.push_back(in_file[node]);
+    trajectory.frames.push_back(segments_above_floor(actor, frames, poses.back()));
+  }
+  const SkinOverFloor skin(character, prepared.humanoid, prepared.body, prepared.start.pose,
+                           prepared.start.segments);
+  const SkinOnFloor read = skin_on_floor(skin, poses);
+  const Response response = response_of(w.baked.outcome);
+  const double until_s = response.fall_begins_s.value_or(1e9);
+  return OnFloor{read.max.body_m, read.end_m,
+                 foot_slide(prepared.body, prepared.home, trajectory, response.steps, until_s)};
+}
+
+/// Whether the written clip lies on the floor as the report says, and slides so to within `slide_m`; nothing
+/// where it cannot be told.
+std::optional<bool> is_as_reported(const Character& character, const Written& w, double slide_m) {
+  constexpr double kKeys_m = 0.002;  // what keys and the frames between frames may move
+  const auto read = on_floor(character, w);
+  if (!read) return std::nullopt;
+  const BakedClip& baked = w.baked.outcome;
+  EXPECT_NEAR(read->depth_m, baked.skin.max.body_m, kKeys_m);
+  EXPECT_NEAR(read->end_m, baked.skin.end_m, kKeys_m);
+  EXPECT_NEAR(read->slide_m, response_of(baked).foot_slide_max_m, slide_m);
+  return true;
+}
+
+TEST(WrittenClip, LiesOnTheFloorAndSlidesAsItsReportSays) {
+  int told = 0;
+  for (const Character& character : {mannequin(), public_fault("figure.gltf")})
+    for (const char* preset : {"medicine-ball", "tackle"}) {
+      BakeSettings settings;
+      settings.preset = preset;
+      settings.simulation.duration_s = 2.0;
+      Diagnostics said;
+      told +=
+          is_as_reported(character, written(character, settings, "a.glb", said), 0.005).has_value() ? 1 : 0;
+    }
+  EXPECT_EQ(told, 4);
+}
+
 TEST(WrittenClip, OfEveryCharacterIsWithinItsRangeInBothFormats) {
   const auto folder = extra_data();
   if (!folder) GTEST_SKIP() << kNoExtraData;
-  int looked_at = 0;
+  // A foot that hardly touches stands longer or shorter where four times as many frames are looked at.
+  constexpr double kOtherStands_m = 0.03;
+  int looked_at = 0, on_floor_told = 0;
   for (const ExtraFile& file : extra_files(*folder)) {
     if (file.verdict != "humanoid") continue;
     SCOPED_TRACE(file.file);
@@ -301,11 +379,15 @@ TEST(WrittenClip, OfEveryCharacterIsWithinItsRangeInBothFormats) {
     BakeSettings settings;
     settings.simulation.duration_s = 1.0;
     for (const char* output : {"a.glb", "a.bvh"}) {
-      EXPECT_LE(written_excess_deg(written(*character, settings, output, said)), 1.0) << output;
+      const Written w = written(*character, settings, output, said);
+      EXPECT_LE(written_excess_deg(w), 1.0) << output;
+      if (std::string(output) == "a.glb")
+        on_floor_told += is_as_reported(*character, w, kOtherStands_m).has_value() ? 1 : 0;
       ++looked_at;
     }
   }
   EXPECT_GE(looked_at, 120);
+  EXPECT_GE(on_floor_told, 40);
 }
 
 }  // namespace

@@ -2,20 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
 
-Quat random_rotation(std::mt19937_64& generator) {
-  std::normal_distribution<double> normal;
-  return Quat(normal(generator), normal(generator), normal(generator), normal(generator)).normalized();
-}
-
 TEST(Math, ExpAndLogAreInverse) {
-  std::mt19937_64 generator(1);
+  Random random(1);
   for (int i = 0; i < 1000; ++i) {
-    const Quat q = random_rotation(generator);
+    const Quat q = test::random_rotation(random);
     EXPECT_LT(angle_between(q, exp_rotation(log_rotation(q))), 1e-14);
   }
   EXPECT_LT((log_rotation(exp_rotation(Vec3(1e-9, 2e-9, 0))) - Vec3(1e-9, 2e-9, 0)).norm(), 1e-20);
@@ -26,8 +21,8 @@ TEST(Math, AngleBetweenIsExactForTinyAngles) {
 }
 
 TEST(Math, RotationPartOfAMirroredMapIsARotation) {
-  std::mt19937_64 generator(2);
-  const Quat q = random_rotation(generator);
+  Random random(2);
+  const Quat q = test::random_rotation(random);
   const Mat3 mirrored = -2.0 * q.toRotationMatrix();
   EXPECT_LT(angle_between(rotation_part(mirrored), q), 1e-14);
   EXPECT_LT(angle_between(rotation_part(Mat3(3.0 * q.toRotationMatrix())), q), 1e-14);

@@ -35,7 +35,7 @@ ReactionRecord record_of(const std::string& file) {
   record.name = "head_left";
   record.digest = digest_of(std::string_view("inputs"));
   record.figures = ReactionFigures{};
-  record.library = "{}";
+  record.library = R"({"Name": "mannequin_head_left"})";
   record.files = {{file, 3, digest_of(std::string_view("old"))}};
   return record;
 }
@@ -49,6 +49,15 @@ TEST_F(Journals, RecordsComeBack) {
 TEST_F(Journals, NameNoFileOutsideTheirFolder) {
   for (const char* name : {"../outside.glb", "mannequin/../../outside.glb", "/tmp/outside.glb", "..", ""})
     EXPECT_TRUE(history_of(record_line(record_of(name)) + "\n").empty()) << name;
+}
+
+TEST_F(Journals, WithALibraryRowThatIsNoneAreNone) {
+  for (const char* row : {"", "{", "7", "[]", "null", "{}", R"({"Name": 3})",
+                          R"({"Name": "a", "Steps": null})", R"({"Name": "a", "Steps": [1]})"}) {
+    ReactionRecord record = record_of("mannequin/head_left.glb");
+    record.library = row;
+    EXPECT_TRUE(history_of(record_line(record) + "\n").empty()) << row;
+  }
 }
 
 TEST_F(Journals, LinesThatAreNoneArePassedOver) {

@@ -1,12 +1,12 @@
 #include "body/body.h"
 
 #include <Eigen/Eigenvalues>
-#include <random>
 
 #include "body/anthropometry.h"
 #include "body/ground.h"
 #include "body/shapes.h"
 #include "simulate/standing_man.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -54,13 +54,12 @@ TEST(Body, LeftAndRightAreMirrored) {
 }
 
 TEST(Shapes, ACapsuleRecoversTheRadiusOfACylindricalLimb) {
-  std::mt19937_64 generator(1);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  Random random(1);
   std::vector<Vec3> skin;
   const Vec3 end(0.0, -0.4, 0.0);
   for (int i = 0; i < 500; ++i) {
-    const double angle = 2.0 * kPi * unit(generator);
-    skin.push_back({0.06 * std::cos(angle), -0.4 * unit(generator), 0.06 * std::sin(angle)});
+    const double angle = random.uniform(0.0, 2.0 * kPi);
+    skin.push_back({0.06 * std::cos(angle), -random.uniform(0.0, 0.4), 0.06 * std::sin(angle)});
   }
   const Shape shape = fit_shapes(Segment::thigh_l, end, 1.75, skin).front();
   EXPECT_EQ(shape.kind, ShapeKind::capsule);
@@ -102,6 +101,25 @@ TEST(Ground, NothingIsRaisedByMoreThanFourCentimetres) {
     for (Rigid& segment : frames[i]) segment.translation.y() = i == 0 ? 0.1 : -0.2;
   EXPECT_NEAR(lift_skin_above_floor(frames, 60.0, skin), 0.040, 1e-12);
   EXPECT_NEAR(frames.back()[0].translation.y(), -0.16, 1e-12);
+}
+
+TEST(Ground, SkinThatSinksRightAfterTheStartIsLiftedAsFast) {
+  std::vector<double> depth(60, 0.0);
+  for (int i = 0; i < 8; ++i) depth[i] = 0.009 * i;  // a tail that swings into the floor at 0.54 m/s
+  const std::vector<double> up = lifts(depth, 0.009, 0.25, 60.0);
+  EXPECT_EQ(up[0], 0.0);
+  for (int i = 0; i < 60; ++i) EXPECT_LT(depth[i] - up[i], 0.0191) << i;
+  for (int i = 1; i < 60; ++i) EXPECT_LT(std::abs(up[i] - up[i - 1]), 0.009 + 1e-9) << i;
+}
+
+TEST(Ground, DeepSkinIsLiftedAsFastAsItIsDeep) {
+  const std::vector<double> depth(60, 0.109);
+  const std::vector<double> little = lifts(depth, 0.009, 0.04, 60.0), all = lifts(depth, 0.009, 0.25, 60.0);
+  EXPECT_NEAR(little.back(), 0.04, 1e-9);
+  EXPECT_NEAR(little[12], 0.02, 1e-9);
+  EXPECT_NEAR(all.back(), 0.1, 1e-9);
+  EXPECT_NEAR(all[12], 0.05, 1e-9);
+  EXPECT_EQ(all[0], 0.0);
 }
 
 }  // namespace

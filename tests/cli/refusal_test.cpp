@@ -64,12 +64,36 @@ TEST_F(Refusal, OfClipSettingsThatDoNotGoTogether) {
                  "exclude each other");
   expect_refused({"bake", "mannequin", "-o", "a.glb", "--recover", "0.5", "--to", "clip"}, kMustChange,
                  "--to clip needs a start clip");
-  expect_refused({"bake", "mannequin", "-o", "a.bvh", "--additive", "rest"}, kMustChange, "--additive is for glTF");
+  expect_refused({"bake", "mannequin", "-o", "a.bvh", "--additive", "rest"}, kMustChange,
+                 "--additive is for glTF");
   expect_refused({"bake", "mannequin", "-o", "a.fbx", "--additive", "identity"}, kMustChange,
                  "--additive is for glTF");
   expect_refused({"bake", "mannequin", "-o", "a.bvh", "--append"}, kMustChange, "--append is for glTF");
   expect_refused({"bake", "mannequin", "-o", "a.glb", "--smooth", "30"}, kMustChange,
                  "--smooth 30 is not below half of the 60 frames per second");
+}
+
+TEST_F(Refusal, OfOptionsThatWouldDoNothing) {
+  expect_refused({"bake", "mannequin", "-o", "a.vrma", "--append"}, kMustChange,
+                 "--append is for glTF and FBX");
+  const auto drawn = [&](std::vector<std::string> more, const char* said) {
+    more.insert(more.begin(), {"render", "mannequin"});
+    expect_refused(more, kMustChange, said);
+  };
+  drawn({"-o", "a.png", "--fps", "10"}, "--fps is for moving pictures");
+  drawn({"-o", "a.png", "--speed", "0.5"}, "--speed is for moving pictures");
+  drawn({"-o", "a.png", "--turntable", "4"}, "--turntable is for moving pictures");
+  drawn({"-o", "a.webp", "--cells", "4"}, "are for sheets");
+  drawn({"-o", "a.png", "--region", "box"}, "--region needs --rom");
+  for (const auto& [option, value] : {std::pair("--height", "1.8"),
+                                      {"--map", "head=Head"},
+                                      {"--unit", "cm"},
+                                      {"--up", "y"},
+                                      {"--root", "#0"}})
+    expect_refused({"rom", option, value}, kMustChange, std::string(option) + " needs --check");
+  expect_refused({"judge", "mannequin", "--impact", "0.1", "--from", "0.2"}, kMustChange,
+                 "--impact and --from exclude each other");
+  expect_refused({"compare", "mannequin", "--show", "1"}, kMustChange, "--show needs a folder");
 }
 
 TEST_F(Refusal, OfAFileOfAnotherSkeletonToAppendTo) {

@@ -95,7 +95,29 @@ TEST(Resample, MeasuresHowFarTheSimulatedJointsComeApart) {
   ResampleError error;
   const Clip clip = resample(puppet.character, puppet.humanoid, start, segments, trajectory, error);
   EXPECT_NEAR(error.position_max_m, 0.005, 1e-9);
+  EXPECT_NEAR(error.position_single_bones_max_m, 0.005, 1e-9);
   EXPECT_LT(error.rotation_max_deg, 1e-6);
+}
+
+/// A node of three scales cannot turn what hangs on it without shearing it.
+TEST(Resample, MeasuresTheTurnsThatARigCannotTake) {
+  test::Puppet puppet = single_bones();
+  Skeleton& skeleton = puppet.character.skeleton;
+  skeleton.nodes[skeleton.find("LeftArm")].rest.scale = Vec3(1.0, 1.4, 1.0);
+  const Pose start = rest_pose(skeleton);
+  const BodyPose segments = segments_of(skeleton, puppet.humanoid, start);
+  const Trajectory trajectory = swinging(segments, 10, 60);
+  ResampleError error;
+  const Clip clip = resample(puppet.character, puppet.humanoid, start, segments, trajectory, error);
+  double seen_deg = 0.0;
+  for (std::size_t f = 0; f < clip.frames.size(); ++f) {
+    const BodyPose rig = segments_of(skeleton, puppet.humanoid, clip.frames[f]);
+    for (int s = 0; s < kSegmentCount; ++s)
+      seen_deg =
+          std::max(seen_deg, degrees(angle_between(rig[s].rotation, trajectory.frames[f][s].rotation)));
+  }
+  EXPECT_GT(seen_deg, 0.5);
+  EXPECT_NEAR(error.rotation_max_deg, seen_deg, 1e-6);
 }
 
 TEST(Resample, SharesABendAmongTheBonesOfASegment) {

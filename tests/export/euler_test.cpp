@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -10,25 +10,25 @@ namespace {
 constexpr AxisOrder kOrders[] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
 
 TEST(Euler, GivesBackAnyRotationInEveryOrder) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> angle(-kPi, kPi);
+  Random random(7);
+  const auto angle = [&] { return random.uniform(-kPi, kPi); };
   for (const AxisOrder& order : kOrders) {
     for (int i = 0; i < 1000; ++i) {
-      const Quat wanted = from_euler({angle(random), angle(random), angle(random)}, order);
+      const Quat wanted = from_euler({angle(), angle(), angle()}, order);
       EXPECT_LT(angle_between(from_euler(to_euler(wanted, order, std::nullopt), order), wanted), 1e-14);
-      const Vec3 previous(5 * angle(random), angle(random), angle(random));
+      const Vec3 previous = test::random_vector(random, kPi).cwiseProduct(Vec3(5, 1, 1));
       EXPECT_LT(angle_between(from_euler(to_euler(wanted, order, previous), order), wanted), 1e-13);
     }
   }
 }
 
 TEST(Euler, StaysExactInTheNeighbourhoodOfTheGimbal) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> angle(-kPi, kPi);
+  Random random(7);
+  const auto angle = [&] { return random.uniform(-kPi, kPi); };
   for (const AxisOrder& order : kOrders) {
     for (double off = 1e-3; off > 1e-17; off /= 3) {
-      const Quat wanted = from_euler({angle(random), kPi / 2 - off, angle(random)}, order);
-      const Vec3 previous(angle(random), angle(random), angle(random));
+      const Quat wanted = from_euler({angle(), kPi / 2 - off, angle()}, order);
+      const Vec3 previous = test::random_vector(random, kPi);
       EXPECT_LT(angle_between(from_euler(to_euler(wanted, order, previous), order), wanted), 1e-10) << off;
     }
   }

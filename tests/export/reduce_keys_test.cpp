@@ -108,6 +108,7 @@ TEST(ReduceKeys, HoldsItsBoundOnAFallingBody) {
     const double seen = test::largest_distance_m(skeleton, clip, reduced.tracks, {});
     EXPECT_LE(reduced.error_m, tolerance);
     EXPECT_LE(seen, reduced.error_m + 1e-9) << "as a viewer plays it";
+    EXPECT_GT(seen, 0.75 * reduced.error_m) << "what is told is no more than what is seen";
     EXPECT_GT(seen, 0.2 * tolerance) << "the tolerance is made use of";
   }
 }

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <random>
 
 #include "export/euler.h"
 #include "export/export.h"
 #include "export/puppet.h"
 #include "load/load.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -92,14 +92,13 @@ double largest_distance_m(const Skeleton& skeleton, const Clip& clip, const Char
 
 /// Any rotation at all, and runs of them ever nearer to where the middle axis of three is at a quarter turn.
 std::vector<Quat> rotations_of_every_kind(const AxisOrder& order, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> angle(-kPi, kPi);
+  Random random(seed);
+  const auto angle = [&] { return random.uniform(-kPi, kPi); };
   std::vector<Quat> rotations;
-  for (int i = 0; i < 300; ++i)
-    rotations.push_back(from_euler({angle(random), angle(random), angle(random)}, order));
+  for (int i = 0; i < 300; ++i) rotations.push_back(from_euler({angle(), angle(), angle()}, order));
   for (const double quarter : {kPi / 2, -kPi / 2})
     for (double off = 0.1; off > 1e-18; off /= 2) {
-      rotations.push_back(from_euler({angle(random), quarter + off, angle(random)}, order));
+      rotations.push_back(from_euler({angle(), quarter + off, angle()}, order));
       rotations.push_back(from_euler({0.3, quarter - off, off}, order));
     }
   for (const double turn : {0.0, kPi, -kPi, kPi / 2, 2 * kPi})

@@ -2,15 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
 
 class Numbers {
  public:
-  Vec3 vector(double size) { return {number(size), number(size), number(size)}; }
-  double number(double size) { return std::uniform_real_distribution<double>(-size, size)(engine_); }
+  Vec3 vector(double size) { return test::random_vector(random_, size); }
   ModelTransform model() {
     ModelTransform m;
     m.translation = vector(100), m.rotation_deg = vector(170), m.scaling = Vec3(1.5, 0.5, 2) + vector(0.3);
@@ -21,7 +20,7 @@ class Numbers {
   }
 
  private:
-  std::mt19937 engine_{7};
+  Random random_{7};
 };
 
 Affine moved(const Vec3& v) { return Affine(Eigen::Translation3d(v)); }

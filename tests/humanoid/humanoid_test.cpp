@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "humanoid/figures.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -23,12 +22,6 @@ Humanoid mapped(const Character& character, const HumanoidOptions& options = {})
 std::string node_of(const Character& character, const Humanoid& humanoid, Segment s) {
   const int node = humanoid.segments[index(s)].node();
   return node < 0 ? "" : character.skeleton.nodes[node].name;
-}
-
-Quat random_rotation(std::mt19937_64& generator, double most) {
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const Vec3 axis = Vec3(uniform(generator), uniform(generator), uniform(generator)).normalized();
-  return exp_rotation(axis * most * std::abs(uniform(generator)));
 }
 
 TEST(Humanoid, MapsMixamoNames) {
@@ -167,6 +160,11 @@ TEST(Humanoid, UnitsOfFilesThatStateNoneAreGuessedAsDrawn) {
 
 TEST(Humanoid, TakesUnitUpAndHeightFromTheUser) {
   const Character character = figure({.unit = 100.0});
+  Diagnostics said;
+  EXPECT_TRUE(
+      map_humanoid(character, {.map = {}, .metres_per_unit = 0.02, .up_axis = {}, .height_m = 1.2}, said));
+  ASSERT_EQ(said.warnings().size(), 1u);
+  EXPECT_EQ(said.warnings()[0].what, "--unit has no effect beside --height, which sets the size");
   EXPECT_DOUBLE_EQ(mapped(character, {.map = {}, .metres_per_unit = 0.02, .up_axis = {}, .height_m = {}})
                        .world_from_file.scale,
                    0.02);
@@ -298,34 +296,33 @@ TEST(Humanoid, TheUserMapIsTakenAndCheckedWithTheNearestName) {
 }
 
 /// Targets whose places follow from the rotations, as a body with joints has them.
-BodyPose random_targets(std::mt19937_64& generator, const BodyPose& from, const Humanoid& humanoid) {
+BodyPose random_targets(Random& random, const BodyPose& from, const Humanoid& humanoid) {
   BodyPose to = from;
-  to[0].rotation = random_rotation(generator, 3.0);
+  to[0].rotation = test::random_rotation(random, 3.0);
   to[0].translation = from[0].translation + Vec3(0.3, -0.2, 0.5);
   for (int s = 1; s < kSegmentCount; ++s) {
     const Segment segment = segment_at(s);
     const int p = index(parent_of(segment));
     const Quat relative = from[p].rotation.conjugate() * from[s].rotation;
     to[s].rotation = to[p].rotation * relative *
-                     (humanoid.segments[s].fused() ? Quat::Identity() : random_rotation(generator, 1.5));
+                     (humanoid.segments[s].fused() ? Quat::Identity() : test::random_rotation(random, 1.5));
     to[s].translation = to[p] * (from[p].inverse() * from[s].translation);
   }
   return to;
 }
 
 TEST(PoseSkeleton, ReproducesTheSegmentsItIsGiven) {
-  std::mt19937_64 generator(7);
+  Random random(7);
   for (const double scale : {1.0, 100.0, 0.01})
     for (const bool fused : {false, true}) {
-      FigureOptions options{
-          .armature = random_rotation(generator, 0.0), .armature_scale = scale, .twisted_nodes = true};
+      FigureOptions options{.armature_scale = scale, .twisted_nodes = true};
       if (fused) options.clavicles = options.hands = false;
       options.spine_bones = 2;
       const Character character = figure(options);
       const Humanoid humanoid = mapped(character);
       const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
       for (int trial = 0; trial < 50; ++trial) {
-        const BodyPose to = random_targets(generator, from, humanoid);
+        const BodyPose to = random_targets(random, from, humanoid);
         const Pose pose = pose_skeleton(character.skeleton, humanoid, humanoid.reference, from, to);
         const BodyPose back = segments_of(character.skeleton, humanoid, pose);
         for (int s = 0; s < kSegmentCount; ++s) {
@@ -340,14 +337,14 @@ TEST(PoseSkeleton, ReproducesTheSegmentsItIsGiven) {
 }
 
 TEST(PoseSkeleton, MirroredArmaturesAreTurnedLikeOthers) {
-  std::mt19937_64 generator(8);
+  Random random(8);
   Character character = figure({.twisted_nodes = true});
   character.skeleton.nodes[0].rest.scale = Vec3(-1, 1, 1);  // left is right now
   Diagnostics diagnostics;
   const auto humanoid = map_humanoid(character, {}, diagnostics);
   ASSERT_TRUE(humanoid);
   const BodyPose from = segments_of(character.skeleton, *humanoid, humanoid->reference);
-  const BodyPose to = random_targets(generator, from, *humanoid);
+  const BodyPose to = random_targets(random, from, *humanoid);
   const BodyPose back =
       segments_of(character.skeleton, *humanoid,
                   pose_skeleton(character.skeleton, *humanoid, humanoid->reference, from, to));
@@ -356,12 +353,12 @@ TEST(PoseSkeleton, MirroredArmaturesAreTurnedLikeOthers) {
 }
 
 TEST(PoseSkeleton, NodesOfNoSegmentKeepTheirLocalTransform) {
-  std::mt19937_64 generator(9);
+  Random random(9);
   const Character character = figure();
   const Humanoid humanoid = mapped(character);
   const BodyPose from = segments_of(character.skeleton, humanoid, humanoid.reference);
   const Pose pose = pose_skeleton(character.skeleton, humanoid, humanoid.reference, from,
-                                  random_targets(generator, from, humanoid));
+                                  random_targets(random, from, humanoid));
   const int finger = character.skeleton.find("mixamorig:LeftHandMiddle1");
   EXPECT_EQ(pose[finger].rotation.coeffs(), humanoid.reference[finger].rotation.coeffs());
   EXPECT_EQ(pose[finger].translation, humanoid.reference[finger].translation);
@@ -380,9 +377,9 @@ TEST(PoseSkeleton, DetachedFeetFollowTheirShanks) {
   const Humanoid humanoid = mapped(character);
   EXPECT_TRUE(humanoid.segments[index(Segment::foot_l)].detached);
   EXPECT_FALSE(humanoid.segments[index(Segment::hand_l)].detached);
-  std::mt19937_64 generator(10);
+  Random random(10);
   const BodyPose from = segments_of(skeleton, humanoid, humanoid.reference);
-  const BodyPose to = random_targets(generator, from, humanoid);
+  const BodyPose to = random_targets(random, from, humanoid);
   const BodyPose back =
       segments_of(skeleton, humanoid, pose_skeleton(skeleton, humanoid, humanoid.reference, from, to));
   EXPECT_LT((back[index(Segment::foot_l)].translation - to[index(Segment::foot_l)].translation).norm(), 1e-9);

@@ -188,6 +188,8 @@ TEST(UserMap, SaysWhatIsWrongWithIt) {
       {{{"head", "mixamorig:Hips"}}, "head (mixamorig:Hips) hangs above"},
       {{{"head", "mixamorig:LeftHand"}}, "head (mixamorig:LeftHand) hangs below"},
       {{{"forearm_l", "mixamorig:RightForeArm"}}, "does not hang below"},
+      {{{"foot_l", "mixamorig:RightFoot"}}, "foot_l (mixamorig:RightFoot) hangs below thigh_r"},
+      {{{"hand_l", "mixamorig:LeftFoot"}}, "hand_l (mixamorig:LeftFoot) hangs below thigh_l"},
       {{{"head", "#99"}}, "there is no node #99"}};
   for (const auto& [map, what] : kCases) {
     HumanoidOptions options;

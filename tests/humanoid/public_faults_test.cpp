@@ -136,6 +136,99 @@ TEST(PublicFaults, AVolumeOfTheShinIsNoFoot) {
   EXPECT_EQ(m.node(Segment::upperarm_r), "mShoulderRight");
 }
 
+/// Moves bones to the other side of the figure that the file puts on one.
+void mirror_places(Skeleton& skeleton, const std::vector<std::string>& bones) {
+  for (const std::string& bone : bones) skeleton.nodes[skeleton.find(bone)].rest.translation.x() *= -1.0;
+}
+
+std::vector<std::string> arm_of(const std::string& side) {
+  return {side + "Shoulder", side + "Arm", side + "ForeArm", side + "Hand"};
+}
+
+Character plain_skeleton() {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  EXPECT_TRUE(character);
+  character->parts.clear();
+  character->skins.clear();
+  return std::move(*character);
+}
+
+TEST(PublicFaults, AnArmOnTheOtherSideThanItsNameSaysIsSaid) {
+  Character character = plain_skeleton();
+  mirror_places(character.skeleton, arm_of("Left"));
+  Diagnostics diagnostics;
+  const auto humanoid = map_humanoid(character, {}, diagnostics);
+  ASSERT_TRUE(humanoid) << humanoid.error().message();
+  EXPECT_EQ(humanoid->segments[index(Segment::upperarm_l)].node(), character.skeleton.find("LeftArm"));
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_EQ(diagnostics.warnings()[0].what,
+            "the left arm ('LeftArm') lies on the right side of the body; the names win: --map "
+            "upperarm_l=NODE and --map upperarm_r=NODE say otherwise");
+}
+
+TEST(PublicFaults, NoBoneIsTheArmOfBothSides) {
+  Character character = plain_skeleton();
+  for (const char* side : {"Left", "Right"}) mirror_places(character.skeleton, arm_of(side));
+  const std::vector<std::string> named = arm_of("Left");
+  for (Node& node : character.skeleton.nodes)
+    if (std::find(named.begin(), named.end(), node.name) == named.end()) node.name.clear();
+  Diagnostics diagnostics;
+  const auto humanoid = map_humanoid(character, {}, diagnostics);
+  ASSERT_TRUE(humanoid) << humanoid.error().message();
+  EXPECT_NE(humanoid->segments[index(Segment::upperarm_l)].node(),
+            humanoid->segments[index(Segment::upperarm_r)].node());
+  EXPECT_FALSE(diagnostics.warnings().empty()) << "one name against the feet";
+}
+
+/// figure.gltf with feet that hang on no leg and have meshes of their own.
+Character with_feet_apart(bool named) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/figure.gltf", {}, diagnostics);
+  EXPECT_TRUE(character);
+  Skeleton& skeleton = character->skeleton;
+  const std::vector<Affine> world = world_transforms(skeleton, rest_pose(skeleton));
+  for (const char* foot : {"LeftFoot", "RightFoot"}) {
+    const int node = skeleton.find(foot);
+    skeleton.nodes[node].parent = -1;
+    skeleton.nodes[node].rest.translation = world[node].translation();
+    MeshPart shoe;
+    shoe.node = node;
+    for (const float z : {-0.05f, 0.2f})
+      for (const float x : {-0.04f, 0.04f}) shoe.positions.push_back({x, -0.06f, z});
+    shoe.indices = {0, 1, 2, 1, 3, 2};
+    character->parts.push_back(shoe);
+  }
+  for (Skin& skin : character->skins)
+    for (int& joint : skin.joints)
+      if (const std::string& name = skeleton.nodes[joint].name;
+          name.find("Foot") != std::string::npos || name.find("Toe") != std::string::npos)
+        joint = skeleton.find("Hips");
+  if (!named)
+    for (Node& node : skeleton.nodes) node.name.clear();
+  EXPECT_TRUE(skeleton.sort());
+  return std::move(*character);
+}
+
+TEST(PublicFaults, FeetThatHangOnNoLegAreFoundByTheirPlace) {
+  for (const bool named : {true, false}) {
+    const Character character = with_feet_apart(named);
+    Diagnostics diagnostics;
+    const auto humanoid = map_humanoid(character, {}, diagnostics);
+    ASSERT_TRUE(humanoid) << humanoid.error().message();
+    EXPECT_NEAR(humanoid->height_m, 1.74, 0.05);
+    const auto world = world_transforms(character.skeleton, rest_pose(character.skeleton));
+    for (const auto& [foot, side] : {std::pair(Segment::foot_l, 1.0), {Segment::foot_r, -1.0}}) {
+      const int node = humanoid->segments[index(foot)].node();
+      ASSERT_GE(node, 0) << named;
+      EXPECT_LT(character.skeleton.nodes[node].parent, 0);
+      EXPECT_GT(side * world[node].translation().x(), 0.05);
+    }
+  }
+}
+
 TEST(PublicFaults, UpperAndLowerBodyMayHangSideBySide) {
   const Mapped m = mapped("mmd_bones.gltf");
   ASSERT_TRUE(m.humanoid) << m.humanoid.error().what;
@@ -270,6 +363,27 @@ TEST(PublicFaults, ASecondFigureIsSaidWhateverItsBonesAreCalled) {
   ASSERT_EQ(diagnostics.warnings().size(), 1u);
   EXPECT_NE(diagnostics.warnings()[0].what.find("--root 'b0'"), std::string::npos)
       << diagnostics.warnings()[0].what;
+}
+
+TEST(PublicFaults, ASecondFigureIsSaidWhereNoBoneHasAName) {
+  Diagnostics diagnostics;
+  auto character =
+      load_character(std::string(UKEMI_TEST_DATA) + "/public_faults/two_figures.gltf", {}, diagnostics);
+  ASSERT_TRUE(character);
+  for (Node& node : character->skeleton.nodes) node.name.clear();
+  ASSERT_TRUE(map_humanoid(*character, {}, diagnostics));
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("holds more than one figure"), std::string::npos);
+}
+
+TEST(PublicFaults, ABindPoseOfAnotherScaleIsSaidAndTheHeightIsThatOfTheBones) {
+  const Mapped m = with_bind_pose([](std::size_t, Affine& inverse_bind) {
+    inverse_bind = Affine::Identity();
+    inverse_bind.linear() *= 1.0 / 3.0;
+  });
+  ASSERT_TRUE(m.humanoid) << m.humanoid.error().message();
+  EXPECT_NE(m.warnings().find("the bind pose of the skin does not fit"), std::string::npos) << m.warnings();
+  EXPECT_NEAR(m.humanoid->height_m, 1.74, 0.12);
 }
 
 TEST(PublicFaults, AScaleThatDiffersByAxisIsSaid) {

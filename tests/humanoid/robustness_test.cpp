@@ -1,10 +1,9 @@
 // Odd hierarchies and maps give an error or a figure, never a crash or a number that is none.
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "humanoid/figures.h"
 #include "humanoid/humanoid.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -36,29 +35,30 @@ int accepted(const Character& character, const HumanoidOptions& options) {
 
 TEST(Robustness, AnyUserMapIsTakenOrRefused) {
   const Character character = figure();
-  std::mt19937_64 generator(3);
+  Random random(3);
   int count = 0;
   for (int trial = 0; trial < 3000; ++trial) {
     HumanoidOptions options;
-    const int entries = 1 + static_cast<int>(generator() % 4);
+    const int entries = 1 + static_cast<int>(test::random_below(random, 4));
     for (int i = 0; i < entries; ++i)
-      options.map[std::string(name(segment_at(static_cast<int>(generator() % kSegmentCount))))] =
-          '#' + std::to_string(generator() % character.skeleton.nodes.size());
+      options
+          .map[std::string(name(segment_at(static_cast<int>(test::random_below(random, kSegmentCount)))))] =
+          '#' + std::to_string(test::random_below(random, character.skeleton.nodes.size()));
     count += accepted(character, options);
   }
   EXPECT_GT(count, 100);
 }
 
 TEST(Robustness, AnyHierarchyOfHumanNamesIsTakenOrRefused) {
-  std::mt19937_64 generator(4);
+  Random random(4);
   int count = 0;
   for (int trial = 0; trial < 3000; ++trial) {
     Character character = figure();
     auto& nodes = character.skeleton.nodes;
-    const int changes = 1 + static_cast<int>(generator() % 6);
+    const int changes = 1 + static_cast<int>(test::random_below(random, 6));
     for (int i = 0; i < changes; ++i) {
-      const auto a = generator() % nodes.size(), b = generator() % nodes.size();
-      switch (generator() % 4) {
+      const auto a = test::random_below(random, nodes.size()), b = test::random_below(random, nodes.size());
+      switch (test::random_below(random, 4)) {
         case 0:
           std::swap(nodes[a].name, nodes[b].name);
           break;

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "humanoid/figures.h"
 #include "humanoid/humanoid.h"
 #include "humanoid/rotations.h"

@@ -1,8 +1,7 @@
 #include "humanoid/transfer.h"
 
-#include <random>
-
 #include "figures.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -18,12 +17,10 @@ Humanoid mapped(const Character& character) {
 }
 
 Pose waved(const Character& character, std::uint64_t seed) {
-  std::mt19937_64 generator(seed);
-  std::normal_distribution<double> angle(0.0, 0.2);
+  Random random(seed);
   Pose pose = rest_pose(character.skeleton);
   for (int i = 1; i < character.skeleton.size(); ++i)
-    pose[i].rotation =
-        pose[i].rotation * exp_rotation(Vec3(angle(generator), angle(generator), angle(generator)));
+    pose[i].rotation = pose[i].rotation * exp_rotation(test::random_vector(random, 0.35));
   return pose;
 }
 
@@ -45,14 +42,14 @@ TEST(Transfer, SameSkeletonInAnotherUnitTakesEveryLocalRotation) {
 }
 
 TEST(Transfer, AnotherSkeletonTakesTheSegmentsRotations) {
-  std::mt19937_64 generator(2);
+  Random random(2);
   for (const double size : {1.0, 0.6}) {
     const Character hero = figure({.unit = size, .spine_bones = 2, .twisted_nodes = true});
     const Character other = figure({.armature = exp_rotation(Vec3(0.5 * kPi, 0, 0)), .spine_bones = 3});
     const Humanoid hero_map = mapped(hero), other_map = mapped(other);
     const Transfer transfer(hero, hero_map, other, other_map);
     EXPECT_FALSE(transfer.same_skeleton());
-    const Pose pose = waved(other, generator());
+    const Pose pose = waved(other, random.next());
     const BodyPose wanted = canonical_segments_of(other.skeleton, other_map, pose);
     const BodyPose taken = segments_of(hero.skeleton, hero_map, transfer(pose));
     for (int s = 0; s < kSegmentCount; ++s)

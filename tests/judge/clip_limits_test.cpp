@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 namespace ukemi {
 namespace {
 
@@ -38,6 +40,52 @@ TEST(ClipLimits, CountSamplesThatLieMoreThanADegreeOutside) {
   const ClipLimits without = clip_limits(humanoid, narrow(), poses);
   EXPECT_EQ(without.samples, 4 * (kJointCount - 1));
   EXPECT_NEAR(without.excess_max_deg, 1.1, 1e-9);
+}
+
+/// A forearm and a hand on it, whose wrist lies so far outside its range in the whole clip's only frame.
+struct Wrist {
+  Skeleton skeleton;
+  SegmentFrames frames;
+  std::optional<RangeKeeper> keeper;
+
+  explicit Wrist(double outside_deg) {
+    skeleton.nodes = {{"forearm", -1, {}}, {"hand", 0, {}}};
+    skeleton.order = {0, 1};
+    frames.node.fill(-1);
+    frames.node[index(Segment::pelvis)] = 0;
+    frames.node[index(Segment::forearm_l)] = 0;
+    frames.node[index(Segment::hand_l)] = 1;
+    for (Quat& turn : frames.segment_from_node) turn = Quat::Identity();
+    keeper.emplace(skeleton, frames, narrow(), std::vector<Pose>{pose(outside_deg)});
+  }
+  Pose pose(double outside_deg) const {
+    Pose pose = rest_pose(skeleton);
+    pose[1].rotation = exp_rotation(Vec3(0.0, 0.1 + radians(outside_deg), 0.0));
+    return pose;
+  }
+  bool is_mended(double outside_deg) const { return !keeper->to_mend(0, pose(outside_deg)).empty(); }
+};
+
+TEST(RangeKeeper, AJointInsideMayComeATwentiethOfADegreeOutside) {
+  const Wrist inside(-2.0);
+  EXPECT_FALSE(inside.is_mended(0.04));
+  EXPECT_TRUE(inside.is_mended(0.06));
+}
+
+TEST(RangeKeeper, AJointOutsideStaysAsFarOutsideAsItIs) {
+  const Wrist outside(3.0);
+  EXPECT_FALSE(outside.is_mended(3.04));
+  EXPECT_FALSE(outside.is_mended(2.96));
+  EXPECT_TRUE(outside.is_mended(3.06));
+  EXPECT_TRUE(outside.is_mended(2.94));
+}
+
+TEST(RangeKeeper, NoSampleCrossesOneOrFiveDegrees) {
+  for (const double threshold_deg : {1.0, 5.0}) {
+    EXPECT_TRUE(Wrist(threshold_deg - 0.01).is_mended(threshold_deg + 0.01)) << threshold_deg;
+    EXPECT_TRUE(Wrist(threshold_deg + 0.01).is_mended(threshold_deg - 0.01)) << threshold_deg;
+    EXPECT_FALSE(Wrist(threshold_deg + 0.01).is_mended(threshold_deg + 0.04)) << threshold_deg;
+  }
 }
 
 }  // namespace

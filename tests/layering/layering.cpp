@@ -235,7 +235,41 @@ void check_file(const fs::path& source, const fs::path& file, LayeringReport& re
   }
 }
 
+bool is_source(const fs::path& file) { return file.extension() == ".h" || file.extension() == ".cpp"; }
+
+/// The .h and .cpp files below a folder, by name.
+std::vector<fs::path> sources_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (auto entry = fs::recursive_directory_iterator(folder); entry != fs::end(entry); ++entry) {
+    const fs::path name = entry->path().filename();
+    if (name == "node_modules" || name == "build")
+      entry.disable_recursion_pending();
+    else if (entry->is_regular_file() && is_source(entry->path()))
+      files.push_back(entry->path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 }  // namespace
+
+std::vector<std::string> foreign_random_numbers(const fs::path& folder) {
+  static const std::regex foreign(
+      R"(#\s*include\s*<random>|\bstd::(mt19937|minstd_rand|random_device|\w+_distribution|shuffle)|)"
+      R"(\bs?rand\(|::Random\()");
+  std::vector<std::string> places;
+  for (const fs::path& file : sources_below(folder)) {
+    std::ifstream stream(file);
+    std::string text;
+    for (int line = 1; std::getline(stream, text); ++line) {
+      std::smatch match;
+      if (std::regex_search(text, match, foreign))
+        places.push_back(fs::relative(file, folder).string() + ":" + std::to_string(line) + ": " +
+                         match.str() + ": take base/random.h");
+    }
+  }
+  return places;
+}
 
 LayeringReport check_layering(const fs::path& source) {
   std::vector<fs::path> files;
@@ -248,7 +282,7 @@ LayeringReport check_layering(const fs::path& source) {
   std::map<std::string, long> lines;
   for (const fs::path& file : files) {
     check_file(source, file, report);
-    if (file.extension() != ".h" && file.extension() != ".cpp") continue;
+    if (!is_source(file)) continue;
     find_types(source, file, types);
     const fs::path relative = fs::relative(file, source);
     lines[relative.begin()->string()] += lines_of(file);

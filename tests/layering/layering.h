@@ -28,4 +28,9 @@ struct LayeringReport {
 /// 7. No room but render is longer than 3,600 lines.
 LayeringReport check_layering(const std::filesystem::path& source);
 
+/// Where a .h or .cpp file below `folder` takes random numbers that differ between standard libraries or from
+/// run to run: the header <random>, rand, Eigen's Random(). Folders named node_modules or build are left out.
+/// "file:line: what".
+std::vector<std::string> foreign_random_numbers(const std::filesystem::path& folder);
+
 }  // namespace ukemi

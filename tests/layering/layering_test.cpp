@@ -23,6 +23,7 @@ class Tree {
     fs::create_directories((root_ / file).parent_path());
     std::ofstream(root_ / file) << text;
   }
+  Strings foreign_random_numbers() const { return ukemi::foreign_random_numbers(root_); }
   LayeringReport check() const { return check_layering(root_); }
   Strings violations() const { return check().violations; }
 
@@ -31,7 +32,7 @@ class Tree {
 };
 
 TEST(Layering, HoldsInTheWholeSourceTree) {
-  const LayeringReport report = check_layering(UKEMI_SOURCE_FOLDER);
+  const LayeringReport report = check_layering(UKEMI_PROJECT_FOLDER "/src");
   EXPECT_EQ(report.violations, Strings{});
   EXPECT_GT(report.files, 20);
   EXPECT_GT(report.includes, 100);
@@ -132,6 +133,30 @@ TEST(Layering, ReportsARoomThatIsTooLongButNotTheRenderer) {
   for (const char* file : {"load/a.h", "load/b.cpp", "render/a.h", "render/b.cpp", "bake/a.cpp"})
     tree.add(file, lines);
   EXPECT_EQ(tree.violations(), (Strings{"load: 4000 lines are more than 3600"}));
+}
+
+TEST(Layering, EveryRandomNumberIsOfTheProjectsOwnGenerator) {
+  EXPECT_EQ(foreign_random_numbers(UKEMI_PROJECT_FOLDER "/src"), Strings{});
+  EXPECT_EQ(foreign_random_numbers(UKEMI_PROJECT_FOLDER "/tools"), Strings{});
+  Strings tests = foreign_random_numbers(UKEMI_PROJECT_FOLDER "/tests");
+  std::erase_if(tests,
+                [](const std::string& place) { return place.starts_with("layering/layering_test.cpp"); });
+  EXPECT_EQ(tests, Strings{});
+}
+
+TEST(Layering, ReportsRandomNumbersThatDifferBetweenLibraries) {
+  const Tree tree;
+  tree.add("load/a_test.cpp",
+           "#include <random>\nstd::mt19937 g(1);\nreturn std::normal_distribution<double>(0, 1)(g);\n");
+  tree.add("body/b.h", "const Vec3 axis = Vec3::Random();\nint operand(int);\n");
+  tree.add("body/c.cpp", "srand(1);\nconst int i = rand() % 3;\n");
+  tree.add("node_modules/c.cpp", "srand(1);\n");
+  EXPECT_EQ(tree.foreign_random_numbers(),
+            (Strings{"body/b.h:1: ::Random(: take base/random.h", "body/c.cpp:1: srand(: take base/random.h",
+                     "body/c.cpp:2: rand(: take base/random.h",
+                     "load/a_test.cpp:1: #include <random>: take base/random.h",
+                     "load/a_test.cpp:2: std::mt19937: take base/random.h",
+                     "load/a_test.cpp:3: std::normal_distribution: take base/random.h"}));
 }
 
 TEST(Layering, CountsTheFilesAndIncludesItLookedAt) {

@@ -244,6 +244,13 @@ TEST(Bvh, RefusesAClipLongerThanADay) {
   EXPECT_NE(c.error().what.find("longer than a day"), std::string::npos) << c.error().what;
 }
 
+TEST(Bvh, SaysThatNobodyFilmsAMillionFramesASecond) {
+  Diagnostics diagnostics;
+  ASSERT_TRUE(read_bvh(kHierarchy + replaced(kMotion, ".0083333", "0.000001"), "walk.bvh", diagnostics));
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("1e+06 frames a second"), std::string::npos);
+}
+
 TEST(Bvh, RefusesAnAbsurdDepth) {
   std::string text = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n";
   for (int i = 0; i < 2000; ++i) text += "JOINT b\n{\nOFFSET 0 0 0\n";

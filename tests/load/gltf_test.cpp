@@ -5,11 +5,11 @@
 
 #include <chrono>
 #include <filesystem>
-#include <random>
 
 #include "base/files.h"
 #include "gltf_builder.h"
 #include "load/gltf_reader.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace fs = std::filesystem;
@@ -145,13 +145,12 @@ TEST(Gltf, MorphDefaultsAreApplied) {
 }
 
 TEST(Gltf, MatrixNodesAreDecomposed) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Random random(7);
   for (int i = 0; i < 200; ++i) {
     Affine expected = Affine::Identity();
-    expected.translate(Vec3(uniform(random), uniform(random), uniform(random)));
-    expected.rotate(exp_rotation(3.0 * Vec3(uniform(random), uniform(random), uniform(random))));
-    Vec3 scale(uniform(random), uniform(random), uniform(random));
+    expected.translate(test::random_vector(random));
+    expected.rotate(exp_rotation(3.0 * test::random_vector(random)));
+    Vec3 scale = test::random_vector(random);
     scale += scale.cwiseSign() * 0.1;
     expected.scale(scale);
     const load::Decomposition parts = load::decompose(expected.matrix());
@@ -477,13 +476,13 @@ TEST(Gltf, ABufferWithoutDataIsRefusedOnlyWhereItIsRead) {
 }
 
 TEST(Gltf, ChangedBytesNeverCrash) {
-  std::mt19937 random(1);
+  Random random(1);
   const Bytes good = skinned_square().glb();
   int loaded = 0;
   for (int i = 0; i < 3000; ++i) {
     Bytes bytes = good;
     for (int k = 0; k < 1 + i % 3; ++k)
-      bytes[12 + random() % (bytes.size() - 12)] = static_cast<std::uint8_t>(random());
+      bytes[12 + test::random_below(random, bytes.size() - 12)] = static_cast<std::uint8_t>(random.next());
     loaded += read(bytes) ? 1 : 0;
   }
   EXPECT_GT(loaded, 100) << "changed floats are still a model";

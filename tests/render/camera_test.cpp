@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -33,13 +33,12 @@ TEST(Camera, projects_as_its_matrix_does) {
 }
 
 TEST(Framing, holds_every_point_and_touches_the_margin) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> place(-2.0, 2.0);
+  Random random(7);
   for (const double aspect : {0.4, 0.9, 2.5}) {
     Framing framing(some_camera(aspect), {0.1, 0.1, 0.1, 0.3});
     std::vector<Vec3> points;
     for (int i = 0; i < 200; ++i) {
-      points.emplace_back(place(random), 0.5 * place(random), place(random));
+      points.push_back(test::random_vector(random, 2.0).cwiseProduct(Vec3(1.0, 0.5, 1.0)));
       framing.add(points.back());
     }
     const Camera camera = framing.fit();

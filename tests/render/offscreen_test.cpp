@@ -3,6 +3,9 @@
 #include <GL/glcorearb.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <utility>
+
 #include "render/gl.h"
 #include "render/painter.h"
 
@@ -42,6 +45,34 @@ TEST(Offscreen, egl_draws_what_osmesa_draws) {
   for (std::size_t i = 0; i < pictures[0].rgba.size(); ++i)
     differing += std::abs(pictures[0].rgba[i] - pictures[1].rgba[i]) > 8;
   EXPECT_LT(differing, 40);
+}
+
+/// UKEMI_OFFSCREEN for as long as this lives.
+class Surroundings {
+ public:
+  explicit Surroundings(const char* value) {
+    if (const char* before = std::getenv("UKEMI_OFFSCREEN")) before_ = before;
+    setenv("UKEMI_OFFSCREEN", value, 1);
+  }
+  ~Surroundings() {
+    before_.empty() ? unsetenv("UKEMI_OFFSCREEN") : setenv("UKEMI_OFFSCREEN", before_.c_str(), 1);
+  }
+
+ private:
+  std::string before_;
+};
+
+TEST(Offscreen, is_of_the_kind_that_the_environment_names) {
+  for (const auto& [word, kind] : {std::pair("egl", OffscreenKind::egl), {"osmesa", OffscreenKind::osmesa}}) {
+    const Surroundings surroundings(word);
+    const auto context = make_offscreen();
+    ASSERT_TRUE(context) << context.error().message();
+    EXPECT_EQ((*context)->kind(), kind) << word;
+  }
+  const Surroundings surroundings("glx");
+  const auto context = make_offscreen();
+  ASSERT_FALSE(context);
+  EXPECT_EQ(context.error().what, "UKEMI_OFFSCREEN is 'glx'");
 }
 
 }  // namespace

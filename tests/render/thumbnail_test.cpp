@@ -16,31 +16,30 @@ std::uint32_t little_endian(const std::vector<std::uint8_t>& bytes, std::size_t 
 
 TEST(Thumbnail, has_the_size_asked_for_and_shows_start_motion_and_blow) {
   BoxyScene scene;
-  const auto whole = render_thumbnail(scene.shot, {160, 120});
+  const auto whole = render_thumbnails(scene.shot, 160, 120);
   ASSERT_TRUE(whole) << whole.error().message();
-  EXPECT_EQ(whole->width, 160);
-  EXPECT_EQ(whole->height, 120);
+  EXPECT_EQ(whole->light.width, 160);
+  EXPECT_EQ(whole->light.height, 120);
   scene.shot.impact_direction.setZero();
   scene.clip.frames.resize(1);
-  const auto still = render_thumbnail(scene.shot, {160, 120});
+  const auto still = render_thumbnails(scene.shot, 160, 120);
   ASSERT_TRUE(still);
-  EXPECT_GT(differing_pixels(*whole, *still, 24), 300);
+  EXPECT_GT(differing_pixels(whole->light, still->light, 24), 300);
 }
 
 TEST(Thumbnail, is_dark_in_the_dark_theme) {
   const BoxyScene scene;
-  const auto light = render_thumbnail(scene.shot, {96, 72, ThemeKind::light});
-  const auto dark = render_thumbnail(scene.shot, {96, 72, ThemeKind::dark});
-  ASSERT_TRUE(light && dark);
-  EXPECT_GT(light->rgba[0], 200);
-  EXPECT_LT(dark->rgba[0], 80);
+  const auto both = render_thumbnails(scene.shot, 96, 72);
+  ASSERT_TRUE(both);
+  EXPECT_GT(both->light.rgba[0], 200);
+  EXPECT_LT(both->dark.rgba[0], 80);
 }
 
 TEST(WebP, of_a_picture_is_small_and_has_its_size) {
   const BoxyScene scene;
-  const auto picture = render_thumbnail(scene.shot, {160, 120});
-  ASSERT_TRUE(picture);
-  const auto bytes = encode_webp(*picture, 80.0);
+  const auto pictures = render_thumbnails(scene.shot, 160, 120);
+  ASSERT_TRUE(pictures);
+  const auto bytes = encode_webp(pictures->light, 80.0);
   ASSERT_TRUE(bytes) << bytes.error().message();
   EXPECT_EQ(std::string(bytes->begin(), bytes->begin() + 4), "RIFF");
   EXPECT_EQ(std::string(bytes->begin() + 8, bytes->begin() + 16), "WEBPVP8 ");

@@ -1,27 +1,25 @@
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "restrict/active.h"
 #include "restrict/range_of_motion.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
 
-SwingTwist random_chart(std::mt19937_64& generator, double max_swing) {
-  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+SwingTwist random_chart(Random& random, double max_swing) {
   SwingTwist chart;
   do {
-    chart.swing = max_swing * Vec2(unit(generator), unit(generator));
+    chart.swing = test::random_vector2(random, max_swing);
   } while (chart.swing.norm() > max_swing);
-  chart.twist = 3.0 * unit(generator);
+  chart.twist = random.uniform(-3.0, 3.0);
   return chart;
 }
 
 TEST(Chart, RoundTripsToTwelveDigits) {
-  std::mt19937_64 generator(1);
+  Random random(1);
   for (int i = 0; i < 2000; ++i) {
-    const SwingTwist chart = random_chart(generator, 2.9);
+    const SwingTwist chart = random_chart(random, 2.9);
     const SwingTwist back = swing_twist(joint_rotation(chart));
     EXPECT_LT((back.swing - chart.swing).norm(), 1e-12);
     EXPECT_NEAR(back.twist, chart.twist, 1e-12);
@@ -29,9 +27,9 @@ TEST(Chart, RoundTripsToTwelveDigits) {
 }
 
 TEST(Chart, LinkDirectionIsTheClosedForm) {
-  std::mt19937_64 generator(2);
+  Random random(2);
   for (int i = 0; i < 200; ++i) {
-    const SwingTwist chart = random_chart(generator, 2.9);
+    const SwingTwist chart = random_chart(random, 2.9);
     const double theta = chart.swing.norm();
     const double k = std::sin(theta) / theta;
     const Vec3 link = joint_rotation(chart) * Vec3::UnitX();
@@ -40,12 +38,12 @@ TEST(Chart, LinkDirectionIsTheClosedForm) {
 }
 
 TEST(Chart, RowsAreTheRatesOfTheChart) {
-  std::mt19937_64 generator(3);
+  Random random(3);
   const double h = 1e-6;
   for (int i = 0; i < 500; ++i) {
-    SwingTwist chart = random_chart(generator, 2.4);
+    SwingTwist chart = random_chart(random, 2.4);
     chart.twist *= 0.8;  // away from the wrap
-    const Vec3 omega = Vec3::Random();
+    const Vec3 omega = test::random_vector(random);
     const Quat q = joint_rotation(chart);
     const SwingTwist after = swing_twist(exp_rotation(h * omega) * q);
     const SwingTwist before = swing_twist(exp_rotation(-h * omega) * q);

@@ -4,10 +4,10 @@
 
 #include <filesystem>
 #include <fstream>
-#include <random>
 
 #include "restrict/range_of_motion.h"
 #include "restrict/region_tables.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -62,12 +62,11 @@ TEST(Region, LeftIsTheMirrorOfRight) {
 TEST(Region, AMirroredPoseHasTheMirroredChart) {
   const auto range = load_range_of_motion("human");
   ASSERT_TRUE(range);
-  std::mt19937_64 generator(4);
-  std::uniform_real_distribution<double> angle(-0.5, 0.5);
+  Random random(4);
   for (int j = 0; j < kJointCount; ++j) {
     const JointRange& right = range->joints[j];
     const JointRange left = mirrored(right);
-    const SwingTwist chart{{angle(generator), angle(generator)}, angle(generator)};
+    const SwingTwist chart{test::random_vector2(random, 0.5), random.uniform(-0.5, 0.5)};
     const Quat q = right.frame.relative_from_joint(joint_rotation(chart));
     const SwingTwist seen = swing_twist(left.frame.joint_from_relative(Quat(q.w(), -q.x(), -q.y(), q.z())));
     EXPECT_NEAR(seen.swing.x(), -chart.swing.x(), 1e-9);

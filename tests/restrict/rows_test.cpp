@@ -1,9 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "restrict/active.h"
 #include "restrict/limit_rows.h"
+#include "support/random.h"
 
 namespace ukemi {
 namespace {
@@ -28,8 +27,7 @@ TEST(EdgeRows, DistancesAreThoseOfTheEdgesAndOfTheTwist) {
 }
 
 TEST(EdgeRows, ASmallStepThatObeysThemStaysInside) {
-  std::mt19937_64 generator(5);
-  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  Random random(5);
   JointRange range = square();
   range.polygon = {{1, -0.5},   {0.3, 0.1},  {0.9, 1},
                    {-0.6, 0.9}, {-0.2, 0.1}, {-0.7, -0.8}};  // two reflex corners
@@ -37,9 +35,9 @@ TEST(EdgeRows, ASmallStepThatObeysThemStaysInside) {
   std::vector<LimitRow> rows;
   int obeyed = 0;
   for (int i = 0; i < 20000; ++i) {
-    const SwingTwist chart{{unit(generator), unit(generator)}, 0.5 * unit(generator)};
+    const SwingTwist chart{test::random_vector2(random), random.uniform(-0.5, 0.5)};
     if (excess(range, chart) > 0.0) continue;
-    const Vec3 omega = 200.0 * Vec3(unit(generator), unit(generator), unit(generator));
+    const Vec3 omega = test::random_vector(random, 200.0);
     edge_rows(range, chart, rows);
     const bool fits = std::all_of(rows.begin(), rows.end(), [&](const LimitRow& row) {
       return row.row.dot(omega) * h <= row.distance;

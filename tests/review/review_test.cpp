@@ -187,6 +187,48 @@ TEST_F(Reviewed, PageIsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(page_files(), first);
 }
 
+/// As a folder of bakes tells them.
+std::vector<ReviewPart> both_parts() {
+  std::vector<ReviewPart> parts;
+  for (const std::string name : {"chest", "head"})
+    parts.push_back({"mannequin",
+                     name,
+                     {"mannequin/" + name + ".bvh", "mannequin/" + name + ".glb"},
+                     "mannequin/" + name + ".json"});
+  return parts;
+}
+
+TEST_F(Reviewed, PartsMadeAheadGiveTheSameBytesAndAreUsedUp) {
+  review();
+  const auto first = page_files();
+  fs::remove_all(folder / "review");
+  fs::remove(folder / "index.html");
+  for (const ReviewPart& part : both_parts()) ASSERT_TRUE(make_review_part(folder, part));
+  EXPECT_FALSE(fs::exists(folder / "review")) << "the page is not begun";
+  review();
+  EXPECT_EQ(page_files(), first);
+  EXPECT_FALSE(fs::exists(folder / ".ukemi/page"));
+}
+
+TEST_F(Reviewed, PartsMadeAheadAreTakenForTheirOwnInputsOnly) {
+  for (const ReviewPart& part : both_parts()) ASSERT_TRUE(make_review_part(folder, part));
+  int parts = 0;
+  for (const auto& entry : fs::directory_iterator(folder / ".ukemi/page")) {
+    if (entry.path().extension() != ".json") continue;
+    Json json = Json::parse(read(entry.path()));
+    json["excess_max_deg"] = 77.0;  // tells that it was taken
+    write(entry.path().lexically_relative(folder), json.dump());
+    ++parts;
+  }
+  ASSERT_EQ(parts, 2);
+  fs::copy_file(folder / "mannequin/head.glb", folder / "mannequin/chest.glb",
+                fs::copy_options::overwrite_existing);
+  review();
+  const Json list = reactions();
+  EXPECT_LT(list[0]["figures"]["clip_excess_max_deg"], 10.0) << "the chest's clip has changed since";
+  EXPECT_EQ(list[1]["figures"]["clip_excess_max_deg"], 77.0);
+}
+
 TEST_F(Reviewed, PageAgainLeavesNothingOfTheLast) {
   review();
   const std::size_t before = page_files().size();

@@ -169,6 +169,23 @@ TEST_F(Meters, WhatABlowGaveWhileItLasted) {
   EXPECT_DOUBLE_EQ(figures().delivered_n_s, 12.0);
 }
 
+TEST_F(Meters, MusclesAndHelp) {
+  recorder_.muscles(0.4, 30.0);
+  recorder_.muscles(0.2, 50.0);
+  recorder_.help(7.0);
+  recorder_.help(12.0);
+  EXPECT_DOUBLE_EQ(figures().muscle_share_max, 0.4);
+  EXPECT_DOUBLE_EQ(figures().muscle_work_j, 50.0);
+  EXPECT_DOUBLE_EQ(figures().help_n_s, 12.0);
+}
+
+TEST_F(Meters, StepsThatCountAndStepsThatWereTakenBack) {
+  for (int i = 0; i < 5; ++i) step();
+  for (int i = 0; i < 3; ++i) recorder_.rejected();
+  EXPECT_EQ(figures().steps, 5);
+  EXPECT_EQ(figures().rejected_steps, 3);
+}
+
 /// Contacts of a man moved by a segment's shift from his stand.
 Contacts contacts_of(const test::StandingMan& man, const BodyPose& pose) {
   OdeWorld world;

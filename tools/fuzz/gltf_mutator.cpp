@@ -2,20 +2,22 @@
 // as a tree as often as byte by byte. Linked into every fuzzer; input that is no glTF is mutated as bytes.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <string>
 #include <vector>
+
+#include "base/random.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Random = std::minstd_rand;
+using ukemi::Random;
 
 constexpr std::size_t kHeaders = 12 + 8 + 8 + 6;  // and paddings
 
@@ -79,7 +81,7 @@ void collect(Json& value, std::vector<Json*>& out) {
     if (value.is_structured()) collect(item, out);
 }
 
-std::size_t below(Random& random, std::size_t count) { return count == 0 ? 0 : random() % count; }
+std::size_t below(Random& random, std::size_t count) { return count == 0 ? 0 : random.next() % count; }
 
 Json odd_number(Random& random) {
   static const std::array<double, 14> kOdd{0,     1,     2,          3,     -1,  1e30, 1e-30,
@@ -113,7 +115,7 @@ void change(Json& value, const Json& other, Random& random) {
         value.erase(std::next(value.begin(), static_cast<std::ptrdiff_t>(below(random, value.size()))).key());
       return;
     case 3:
-      if (value.is_number_integer()) value = value.get<std::int64_t>() + (random() % 2 == 0 ? 1 : -1);
+      if (value.is_number_integer()) value = value.get<std::int64_t>() + (random.next() % 2 == 0 ? 1 : -1);
       return;
     case 4:
       value = odd_text(random);
@@ -137,7 +139,7 @@ void mutate_tree(Parts& parts, Random& random) {
     if (&value == &json) continue;
     change(value, other, random);
   }
-  if (random() % 2 == 0 && json.is_object() && json.contains("buffers") && json["buffers"].is_array() &&
+  if (random.next() % 2 == 0 && json.is_object() && json.contains("buffers") && json["buffers"].is_array() &&
       !json["buffers"].empty() && json["buffers"][0].is_object() && !parts.binary.empty())
     json["buffers"][0]["byteLength"] = parts.binary.size();
   parts.json = json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -157,7 +159,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                unsigned int seed) {
   Random random(seed + 1);
   Parts parts;
-  if (random() % 16 == 0 || !split(data, size, parts)) return LLVMFuzzerMutate(data, size, max_size);
+  if (random.next() % 16 == 0 || !split(data, size, parts)) return LLVMFuzzerMutate(data, size, max_size);
   const std::size_t most =
       max_size > kHeaders + parts.binary.size() ? max_size - kHeaders - parts.binary.size() : 0;
   switch (below(random, 4)) {
@@ -165,7 +167,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
       mutate_bytes(parts.json, most);
       break;
     case 1:
-      if (random() % 2 == 0)
+      if (random.next() % 2 == 0)
         mutate_bytes(parts.binary, parts.binary.size() + 16);
       else
         mutate_floats(parts.binary, random);
