@@ -95,14 +95,15 @@ MakeController behaviour_of(const ArticulatedBody& body, const RangeOfMotion& ra
   fall.breathes = behaviour.breathes;
   std::shared_ptr<const Gait> gait;
   if (behaviour.goes_on)
-    gait = std::make_shared<Gait>(body, PerSide<Leg>{Leg(body, home, BodySide::left), Leg(body, home, BodySide::right)},
-                                  *behaviour.goes_on, behaviour.gait_step_s, settings.gravity);
+    gait = std::make_shared<Gait>(
+        body, PerSide<Leg>{Leg(body, home, BodySide::left), Leg(body, home, BodySide::right)},
+        *behaviour.goes_on, behaviour.gait_step_s, settings.gravity);
   return [&body, &range, &strength, &home, stand, fall, gravity = settings.gravity,
           tone = ToneSettings{tone_of(settings), settings.tone_fade_s}, knockout = behaviour.knockout,
           must_stand = behaviour.must_stand, gait]() -> std::unique_ptr<Controller> {
     std::unique_ptr<OnFeet> on_feet;
     if (gait)
-      on_feet = std::make_unique<Striding>(body, home, strength, gravity, stand, gait);
+      on_feet = std::make_unique<Striding>(body, home, gravity, stand, gait);
     else
       on_feet = std::make_unique<Standing>(body, home, gravity, stand);
     auto alive = std::make_unique<Alert>(std::move(on_feet), body, range, strength, fall, must_stand);

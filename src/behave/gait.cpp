@@ -10,14 +10,14 @@
 namespace ukemi {
 namespace {
 
-constexpr double kDown = 0.035;         // of the leg: a sole whose lowest corner is so low may stand
-constexpr double kStill = 0.45;         // of the speed of the gait, and
-constexpr double kStill_m_s = 0.15;     // faster by that: a sole that moves more does not stand
+constexpr double kDown = 0.035;      // of the leg: a sole whose lowest corner is so low may stand
+constexpr double kStill = 0.45;      // of the speed of the gait, and
+constexpr double kStill_m_s = 0.15;  // faster by that: a sole that moves more does not stand
 constexpr double kShortestGap_s = 0.06, kShortestStand_s = 0.07;
-constexpr double kFloor = 0.3;          // of the moments of a gait a sole is lower
+constexpr double kFloor = 0.3;  // of the moments of a gait a sole is lower
 constexpr double kSinks_s = 0.15;
-constexpr double kSettled_s = 0.03;     // after the landing a sole has its place
-constexpr int kSmooth = 3;              // frames to either side
+constexpr double kSettled_s = 0.03;  // after the landing a sole has its place
+constexpr int kSmooth = 3;           // frames to either side
 
 std::vector<Vec3> smoothed(const std::vector<Vec3>& values) {
   const int last = static_cast<int>(values.size()) - 1;

@@ -10,7 +10,7 @@ namespace ukemi {
 /// A time in which a foot is on the ground, s from the blow.
 struct Stand {
   double from_s = 0.0, until_s = 0.0;
-  Vec2 sole = Vec2::Zero();  // where, world
+  Vec2 sole = Vec2::Zero();      // where, world
   Vec2 catch_at = Vec2::Zero();  // the capture point when the foot comes down, from `sole`
 };
 

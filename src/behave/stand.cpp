@@ -21,11 +21,6 @@ constexpr double kHipLean = 4.0, kMostLean = 0.7;  // rad per m of the capture p
 constexpr double kHelp = 1.5;                      // of what stops the capture point
 constexpr double kReaction_s = 0.06;               // from nothing to everything
 
-// Springs, N m/rad at strength 1: share of the torque at 0.35 rad.
-constexpr double kStiffness[] = {220.0, 160.0, 40.0,  70.0,  70.0,  60.0,  12.0,  70.0, 70.0,
-                                 60.0,  12.0,  230.0, 230.0, 150.0, 230.0, 230.0, 150.0};
-constexpr double kFullAt = 0.35;  // rad
-constexpr double kEccentric = 1.2;
 constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
 constexpr double kAhead_s = 0.004;  // postures are compared over so long
 
@@ -646,19 +641,8 @@ LegPosture Standing::swinging_posture(const Vec3& hip_at, double time_s) const {
   return posture;
 }
 
-void Standing::ask_joint(Joint joint, const Quat& goal, const Vec3& velocity, const Vec3& feed_forward,
-                         double share, double damping_s) {
-  if (physique_.fused[ukemi::index(joint)]) return;
-  JointGoal asked;
-  asked.parent_from_child = goal;
-  asked.velocity = velocity;
-  asked.feed_forward_n_m = feed_forward;
-  asked.stiffness_n_m_rad = share * kStiffness[ukemi::index(joint)] * kEccentric * physique_.strength *
-                            settings_.strength / kFullAt;
-  asked.damping_n_m_s_rad = asked.stiffness_n_m_rad * damping_s;
-  asked.least_n_m.setConstant(-1e6);
-  asked.most_n_m.setConstant(1e6);
-  asked_.joints[ukemi::index(joint)].push_back(asked);
+void Standing::ask_joint(Joint joint, const Drive& drive) {
+  ukemi::ask_joint(physique_, settings_.strength, joint, drive, asked_);
 }
 
 void Standing::ask_standing_leg(const Senses& senses, const View& view, const Wrench& wrench, BodySide side) {
@@ -695,8 +679,8 @@ void Standing::ask_standing_leg(const Senses& senses, const View& view, const Wr
     const Quat home =
         home_[ukemi::index(chain[k])].rotation.conjugate() * home_[ukemi::index(chain[k + 1])].rotation;
     const Vec3 omega = b * (parent * log_rotation(later * relative.conjugate())) / kAhead_s;
-    ask_joint(joints[k], taken_over(senses, joints[k], home.slerp(b, relative), 0.0, 0.15), omega, carried,
-              share[k], s(kDamping_s));
+    ask_joint(joints[k], {taken_over(senses, joints[k], home.slerp(b, relative), 0.0, 0.15), omega, carried,
+                          share[k], s(kDamping_s)});
   }
 }
 
@@ -715,8 +699,8 @@ void Standing::ask_swinging_leg(const Senses& senses) {
     const int parent = ukemi::index(parents[k]);
     const Vec3 omega =
         log_rotation(soon[k] * goal[k].conjugate()) / kAhead_s - senses.angular_velocity[parent];
-    ask_joint(joints[k], senses.pose[parent].rotation.conjugate() * goal[k], omega,
-              -physique_.weight_torque(senses, joints[k]), share[k], s(kSwingDamping_s));
+    ask_joint(joints[k], {senses.pose[parent].rotation.conjugate() * goal[k], omega,
+                          -physique_.weight_torque(senses, joints[k]), share[k], s(kSwingDamping_s)});
   }
 }
 
@@ -732,8 +716,8 @@ void Standing::ask_upper_body(const Senses& senses) {
     if (arm && !settings_.arms_free[ukemi::index(side)]) turn = Vec3::Zero();
     const Quat home = home_[ukemi::index(parent_of(joint))].rotation.conjugate() *
                       home_[ukemi::index(child_of(joint))].rotation;
-    ask_joint(joint, taken_over(senses, joint, exp_rotation(turn) * home, 0.1, 0.5), Vec3::Zero(),
-              -physique_.weight_torque(senses, joint), arm ? 0.35 : 0.5, s(kDamping_s));
+    ask_joint(joint, {taken_over(senses, joint, exp_rotation(turn) * home, 0.1, 0.5), Vec3::Zero(),
+                      -physique_.weight_torque(senses, joint), arm ? 0.35 : 0.5, s(kDamping_s)});
   }
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "behave/drives.h"
 #include "behave/flinch.h"
 #include "behave/legs.h"
 #include "behave/on_feet.h"
@@ -116,8 +117,7 @@ class Standing : public OnFeet {
   void ask_swinging_leg(const Senses& senses);
   void ask_upper_body(const Senses& senses);
   Vec3 help_of(const View& view) const;
-  void ask_joint(Joint joint, const Quat& goal, const Vec3& velocity, const Vec3& feed_forward,
-                 double stiffness, double damping_s);
+  void ask_joint(Joint joint, const Drive& drive);
   double active(double time_s) const;
   void take_over(const Senses& senses);
   void go_on(const Senses& senses, BodySide side, double lands_in_s);

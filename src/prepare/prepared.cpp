@@ -145,7 +145,8 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
   for (const std::string& idle : idle_settings(settings, prepared.scene.kind)) diagnostics.warn("", idle);
   for (const std::string& idle : idle_settings(settings, character)) diagnostics.warn("", idle);
   if (settings.latency_s && prepared.behaviour.under_way)
-    diagnostics.warn("", "--reaction-time has no effect: who walks or runs is in control of his steps already");
+    diagnostics.warn("",
+                     "--reaction-time has no effect: who walks or runs is in control of his steps already");
   return prepared;
 }
 
