@@ -264,10 +264,23 @@ Status check_combinations(const BakeSettings& settings) {
 /// The length that nobody asked for was too short.
 void warn_of_unrest(const BakeSettings& settings, const BakedClip& baked, Diagnostics& diagnostics) {
   const bool hit = baked.prepared.scene.kind != SceneKind::none;
-  if (settings.simulation.duration_s || !settings.until_rest || !hit || baked.figures.rest_time_s) return;
+  if (settings.simulation.duration_s || !settings.until_rest || !hit || baked.figures.rest_time_s ||
+      baked.behaviour.goes_on)
+    return;
   diagnostics.warn(
       "", fmt::format("the clip ends after {:.1f} s, before the body is at rest: give a longer --duration",
                       simulated_s(settings)));
+}
+
+/// Who was to go on with his clip came to stand, or fell.
+void warn_of_stopping(const BakedClip& baked, Diagnostics& diagnostics) {
+  if (!baked.prepared.behaviour.goes_on || baked.behaviour.goes_on || baked.behaviour.fall_begins_s) return;
+  diagnostics.warn("",
+                   baked.returns_s > 0.0
+                       ? "he cannot go on with the clip after this blow: he comes to stand, and is blended "
+                         "into it from there"
+                       : "he cannot go on with the clip after this blow: he comes to stand; a weaker "
+                         "--strength lets him go on, --return S blends him into it");
 }
 
 }  // namespace
@@ -287,6 +300,7 @@ Result<BakedClip> bake(const Character& character, const BakeSettings& settings,
   auto found = search_take(character, settings, *prepared, run, diagnostics);
   if (!found) return found.error();
   warn_of_unrest(settings, *found, diagnostics);
+  warn_of_stopping(*found, diagnostics);
   warn_of_sinking_skin(character, found->skin, diagnostics);
   found->timings_s.load = load_s;
   found->timings_s.total = watch.total();

@@ -32,6 +32,7 @@ struct BakedClip {
   Timeline timeline;               // its still tail trimmed, lead and recovery added
   SkinOnFloor skin;                // of the whole timeline
   ClipLimits human;                // of the whole timeline, against the human range
+  double returns_s = 0.0;          // blend at the end, part of the timeline
   double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
   ResampleError resample_error;
   int trials = 1;      // of the search that found it

@@ -194,6 +194,8 @@ Json response_json(const BakedClip& outcome) {
   json["trials"] = outcome.trials;
   json["score"] = outcome.score;
   json["assist_n_s"] = figures.help_n_s;
+  const auto& goes_on = outcome.behaviour.goes_on;
+  json["goes_on_s"] = goes_on ? Json(outcome.timeline.impact_s + goes_on->time_s) : Json(nullptr);
   return json;
 }
 

@@ -4,7 +4,7 @@
 
 namespace ukemi {
 
-double human_score(const Character& character, const BakeSettings& settings, const BakedClip& baked) {
+double human_score(const Character& character, const BakedClip& baked) {
   const Timeline& timeline = baked.timeline;
   JudgedMotion motion = judged_motion(character, baked.prepared.humanoid, timeline.clip);
   motion.mass_kg = baked.prepared.body.mass_kg;
@@ -13,7 +13,7 @@ double human_score(const Character& character, const BakeSettings& settings, con
   blow.momentum_n_s = baked.figures.momentum_n_s;
   blow.hit = baked.prepared.scene.target;
   blow.knock_out = baked.behaviour.knocked_out_s.has_value();
-  if (settings.recover_s) blow.to_s = timeline.clip.duration_s() - *settings.recover_s;
+  if (baked.returns_s > 0.0) blow.to_s = timeline.clip.duration_s() - baked.returns_s;
   return judge(motion, blow).score;
 }
 

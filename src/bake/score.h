@@ -8,6 +8,6 @@
 namespace ukemi {
 
 /// Score of a baked clip from the blow to where it begins to recover, see judge/judge.h.
-double human_score(const Character& character, const BakeSettings& settings, const BakedClip& baked);
+double human_score(const Character& character, const BakedClip& baked);
 
 }  // namespace ukemi

@@ -20,6 +20,7 @@
 namespace ukemi {
 namespace {
 
+constexpr double kGoesOn_s = 0.4;                 // of the blend into the start clip of who goes on with it
 constexpr double kMostTransforms = 16'777'216.0;  // of a clip: 9 GB while its keys are reduced
 
 /// Keeps `hold_s` after the moment everything rests.
@@ -73,7 +74,7 @@ double breath_s(const Prepared& prepared, const ControllerReport& behaviour) {
 Status check_clip_size(const Character& character, const BakeSettings& settings,
                        const Trajectory& trajectory) {
   const double frames = static_cast<double>(trajectory.frames.size()) +
-                        (settings.lead_s + settings.recover_s.value_or(0.0)) * trajectory.fps;
+                        (settings.lead_s + settings.recover_s.value_or(kGoesOn_s)) * trajectory.fps;
   const double nodes = character.skeleton.size();
   if (frames * nodes <= kMostTransforms) return Done{};
   return usage_error(fmt::format("{:.0f} frames of {:.0f} nodes are more than {:.0f} transforms", frames,
@@ -118,6 +119,23 @@ void add_marks(const SimulationFigures& figures, const ControllerReport& behavio
     clip.marks.push_back({"rest", *figures.rest_time_s});
 }
 
+/// A run ends where the body goes on with its clip.
+void end_where_it_goes_on(const std::optional<GoesOn>& goes_on, Trajectory& trajectory) {
+  if (!goes_on) return;
+  const auto frames = static_cast<std::size_t>(goes_on->time_s * trajectory.fps + 1e-9) + 1;
+  if (frames >= trajectory.frames.size()) return;
+  trajectory.frames.resize(frames);
+  for (Prop& prop : trajectory.props)
+    if (prop.poses.size() > frames) prop.poses.resize(frames);
+}
+
+/// Where the clip leads in the end: who goes on is at the moment of the clip that he has come to.
+Return return_of(const BakeSettings& settings, const ControllerReport& behaviour) {
+  Return to{settings.recover_to, std::nullopt};
+  if (behaviour.goes_on) to.moment_s = behaviour.goes_on->moment_s;
+  return to;
+}
+
 /// From the simulated segments to the clip with all that stands before and behind them.
 Status make_timeline(const Character& character, const BakeSettings& settings, Trajectory trajectory,
                      BakedClip& outcome) {
@@ -145,8 +163,9 @@ Status make_timeline(const Character& character, const BakeSettings& settings, T
       std::max(outcome.ground_lift_max_m, lift_blended_skin(actor, blended, outcome.timeline));
   add_lead(actor, prepared.scene, gravity, settings.lead_s, outcome.timeline);
   Status status = Done{};
-  if (settings.recover_s)
-    status = add_recovery(actor, *settings.recover_s, settings.recover_to, gravity, outcome.timeline);
+  if (outcome.returns_s > 0.0)
+    status = add_recovery(actor, outcome.returns_s, return_of(settings, outcome.behaviour), gravity,
+                          outcome.timeline);
   outcome.skin = skin_on_floor(blended, clip.frames);
   return status;
 }
@@ -157,7 +176,25 @@ Result<SimulationResult> simulate_take(const BakeSettings& settings, const Prepa
                                        const BehaviourSettings& behaviour, Diagnostics& diagnostics) {
   SimulationSettings simulated = settings.simulation;
   simulated.duration_s = simulated_s(settings);
-  return simulate(simulation_input(prepared, prepared.scene, simulated, behaviour), diagnostics);
+  Diagnostics said;
+  const auto run = [&](const BehaviourSettings& lives) {
+    said = {};
+    return simulate(simulation_input(prepared, prepared.scene, simulated, lives), said);
+  };
+  auto result = run(behaviour);
+  if (behaviour.goes_on && result && result->behaviour.fall_begins_s) {
+    // Who falls as he goes on may come to stand.
+    const Diagnostics falling = said;
+    BehaviourSettings stops = behaviour;
+    stops.goes_on.reset();
+    auto stopped = run(stops);
+    if (stopped && !stopped->behaviour.fall_begins_s)
+      result = std::move(stopped);
+    else
+      said = falling;
+  }
+  for (const Warning& warning : said.warnings()) diagnostics.warn(warning.subject, warning.what);
+  return result;
 }
 
 Result<BakedClip> clip_of_take(const Character& character, const BakeSettings& settings,
@@ -168,6 +205,8 @@ Result<BakedClip> clip_of_take(const Character& character, const BakeSettings& s
   outcome.figures = std::move(simulation.figures);
   outcome.behaviour = std::move(simulation.behaviour);
   Trajectory& trajectory = simulation.trajectory;
+  outcome.returns_s = settings.recover_s.value_or(outcome.behaviour.goes_on ? kGoesOn_s : 0.0);
+  end_where_it_goes_on(outcome.behaviour.goes_on, trajectory);
   const bool blow = prepared.scene.kind != SceneKind::none;
   const bool gets_up =
       settings.get_up_s && lying_of(prepared.body, trajectory.frames.back()) != Lying::upright;
@@ -184,7 +223,7 @@ Result<BakedClip> clip_of_take(const Character& character, const BakeSettings& s
   const auto human = load_range_of_motion("human");
   if (!human) return human.error();
   outcome.human = clip_limits(prepared.humanoid, *human, outcome.timeline.trajectory.frames);
-  outcome.score = human_score(character, settings, outcome);
+  outcome.score = human_score(character, outcome);
   return outcome;
 }
 

@@ -111,7 +111,7 @@ ControllerReport Alert::report() const {
   ControllerReport report = falling_.report();
   report.steps = on_feet_->steps();
   report.fall_begins_s = on_feet_->lost_s();
-  report.goes_on_from_s = on_feet_->goes_on_from_s();
+  report.goes_on = on_feet_->goes_on();
   if (on_feet_->lost_s())
     report.events.insert(report.events.begin(), {"lost: " + on_feet_->lost_why(), *on_feet_->lost_s()});
   return report;

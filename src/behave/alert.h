@@ -21,7 +21,7 @@ class Alert : public Controller {
   void drive(double time_s, Goals& goals) const override;
   bool done() const override;
   bool hopeless() const override { return must_stand_ && on_feet_->lost_s(); }
-  bool over() const override { return !falling_.begun() && on_feet_->goes_on_from_s(); }
+  bool over() const override { return !falling_.begun() && on_feet_->goes_on(); }
   ControllerReport report() const override;
 
   /// A foot has been set down in a step.

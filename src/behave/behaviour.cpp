@@ -82,6 +82,16 @@ StandSettings stand_settings(const ArticulatedBody& body, const Scene& scene,
   return stand;
 }
 
+/// What it goes on with; null: it comes to stand.
+std::shared_ptr<const Gait> gait_of(const ArticulatedBody& body, const BodyPose& home,
+                                    const BehaviourSettings& behaviour, double gravity) {
+  if (!behaviour.goes_on) return nullptr;
+  const PerSide<Leg> legs{Leg(body, home, BodySide::left), Leg(body, home, BodySide::right)};
+  auto gait = std::make_shared<Gait>(body, legs, *behaviour.goes_on, behaviour.gait_step_s, gravity);
+  const bool walks = !gait->stands(BodySide::left).empty() && !gait->stands(BodySide::right).empty();
+  return walks ? gait : nullptr;
+}
+
 }  // namespace
 
 MakeController behaviour_of(const ArticulatedBody& body, const RangeOfMotion& range,
@@ -93,19 +103,12 @@ MakeController behaviour_of(const ArticulatedBody& body, const RangeOfMotion& ra
   fall.arms_free = behaviour.arms_free;
   fall.seed = behaviour.seed;
   fall.breathes = behaviour.breathes;
-  std::shared_ptr<const Gait> gait;
-  if (behaviour.goes_on)
-    gait = std::make_shared<Gait>(
-        body, PerSide<Leg>{Leg(body, home, BodySide::left), Leg(body, home, BodySide::right)},
-        *behaviour.goes_on, behaviour.gait_step_s, settings.gravity);
+  const std::shared_ptr<const Gait> gait = gait_of(body, home, behaviour, settings.gravity);
   return [&body, &range, &strength, &home, stand, fall, gravity = settings.gravity,
           tone = ToneSettings{tone_of(settings), settings.tone_fade_s}, knockout = behaviour.knockout,
           must_stand = behaviour.must_stand, gait]() -> std::unique_ptr<Controller> {
-    std::unique_ptr<OnFeet> on_feet;
-    if (gait)
-      on_feet = std::make_unique<Striding>(body, home, gravity, stand, gait);
-    else
-      on_feet = std::make_unique<Standing>(body, home, gravity, stand);
+    std::unique_ptr<OnFeet> on_feet = std::make_unique<Standing>(body, home, gravity, stand);
+    if (gait) on_feet = std::make_unique<Striding>(body, home, gravity, stand, gait);
     auto alive = std::make_unique<Alert>(std::move(on_feet), body, range, strength, fall, must_stand);
     if (!knockout) return alive;
     return std::make_unique<KnockedOut>(std::move(alive), body, *knockout, tone);

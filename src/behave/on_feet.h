@@ -31,8 +31,7 @@ class OnFeet {
   virtual std::optional<BodySide> swinging() const = 0;
   /// It stands at ease.
   virtual bool calm() const = 0;
-  /// It goes on as it did before the blow: the moment of its motion, s from the blow.
-  virtual std::optional<double> goes_on_from_s() const { return std::nullopt; }
+  virtual std::optional<GoesOn> goes_on() const { return std::nullopt; }
   virtual const Physique& physique() const = 0;
 
  protected:

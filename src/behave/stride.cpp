@@ -55,11 +55,11 @@ constexpr double kAhead_s = 0.004;  // postures are compared over so long
 
 // When it is given up, and when it goes well.
 constexpr double kDecides_s = 0.05;                         // a blow is felt so soon
-constexpr double kTooFarAside = 0.05, kTooFarAhead = 0.10;  // m: of the capture point, until then
+constexpr double kTooFarAside = 0.10, kTooFarAhead = 0.20;  // m: of the capture point, until then
 constexpr double kSunk = 0.6;                               // of the height of a body that stands
 constexpr double kOutOfReach = 0.9;                         // of the leg: of the capture point
-constexpr double kWell = 0.10, kWell_m_s = 0.3;             // m, m/s: of the capture point and the speed
-constexpr double kWellFor_s = 0.6, kLeast_s = 1.2;          // it is seen to go on for so long after the blow
+constexpr double kWell = 0.15, kWell_m_s = 0.35;            // m, m/s: of the capture point and the speed
+constexpr double kWellFor_s = 0.4, kLeast_s = 1.2;         // it is seen to go on for so long after the blow
 
 }  // namespace
 
@@ -142,9 +142,9 @@ std::optional<BodySide> Striding::swinging() const {
   return std::nullopt;
 }
 
-std::optional<double> Striding::goes_on_from_s() const {
+std::optional<GoesOn> Striding::goes_on() const {
   if (stops_ || lost_s() || well_s_ < s(kWellFor_s) || time_s_ < s(kLeast_s)) return std::nullopt;
-  return phase_s_;
+  return GoesOn{time_s_, phase_s_};
 }
 
 std::optional<Stand> Striding::stand_of(BodySide side) const {

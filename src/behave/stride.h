@@ -31,7 +31,7 @@ class Striding : public OnFeet {
   const std::vector<StepTaken>& steps() const override { return steps_; }
   std::optional<BodySide> swinging() const override;
   bool calm() const override { return stops_ && stops_->calm(); }
-  std::optional<double> goes_on_from_s() const override;
+  std::optional<GoesOn> goes_on() const override;
   const Physique& physique() const override { return physique_; }
 
  private:

@@ -150,14 +150,15 @@ TimelinePart part_of(const Actor& actor, const SegmentFrames& frames, std::vecto
 
 }  // namespace
 
-Status add_recovery(const Actor& actor, double seconds, RecoverTo to, double gravity, Timeline& timeline) {
+Status add_recovery(const Actor& actor, double seconds, const Return& to, double gravity,
+                    Timeline& timeline) {
   const Skeleton& skeleton = actor.character.skeleton;
   const Humanoid& humanoid = actor.humanoid;
   Clip& clip = timeline.clip;
   const int frames = frames_in(seconds, clip.fps);
   if (frames <= 0 || clip.frames.empty()) return Done{};
   const double duration_s = frames / clip.fps;
-  const double cut_s = clip.duration_s() - timeline.impact_s;
+  const double cut_s = to.moment_s.value_or(clip.duration_s() - timeline.impact_s);
   const Pose last = clip.frames.back();
   const Pose before = clip.frames.size() > 1 ? clip.frames[clip.frames.size() - 2] : last;
   const BodyPose figure = segments_of(skeleton, humanoid, last);
@@ -165,10 +166,13 @@ Status add_recovery(const Actor& actor, double seconds, RecoverTo to, double gra
     return usage_error("--recover blends a standing body back, and this one ends on the floor",
                        "add --get-up in its place");
   const auto unplaced = [&](double time_s) {
-    if (to != RecoverTo::clip) return actor.start.pose;
+    if (to.where != RecoverTo::clip) return actor.start.pose;
     return unhit_pose(skeleton, humanoid, actor.start, cut_s + time_s);
   };
-  const GroundMove place = place_for(segments_of(skeleton, humanoid, unplaced(0.0)), figure);
+  const BodyPose first = segments_of(skeleton, humanoid, unplaced(0.0));
+  const GroundMove place = to.moment_s
+                               ? ground_move({first.begin(), first.end()}, {figure.begin(), figure.end()})
+                               : place_for(first, figure);
   const auto target = [&](double time_s) { return place.moved(skeleton, humanoid, unplaced(time_s)); };
   const Blend blend(before, last, target(-1.0 / clip.fps), target(0.0), clip.fps);
   std::vector<Pose> poses{last};

@@ -88,7 +88,8 @@ const std::vector<Need>& needs() {
       {{"to"},
        "--return",
        [](const Given& g) {
-         return g.settings.recover_s.has_value() || g.settings.recover_to == RecoverTo::stance;
+         return g.settings.recover_s.has_value() || g.settings.recover_to == RecoverTo::stance ||
+                (g.settings.recover_to == RecoverTo::clip && g.settings.clip && is_alive(g));
        }},
       {{"to"},
        "a body that is alive (--behaviour): it ends as it comes to rest",

@@ -571,8 +571,10 @@ Settings clip_settings() {
                  "none"),
       choice<S, RecoverTo>(
           "to", {{"stance", RecoverTo::stance}, {"rest", RecoverTo::rest}, {"clip", RecoverTo::clip}},
-          "where --return leads: the start pose, or what the start clip plays by then (a cycle goes round "
-          "and round); stance, without --return: he stays as he came to stand",
+          "where the clip leads: rest, the start pose (with --return); clip, what the start clip plays by "
+          "then, and who walks goes on walking with it (without --return too); stance: he stays as he came "
+          "to "
+          "stand",
           [](auto& s) -> auto& { return s.recover_to; }),
       choice<S, RootMotion>(
           "root-motion",

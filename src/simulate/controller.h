@@ -43,6 +43,12 @@ struct FallReport {
   std::string end_pose;  // kneeling, seated, supine, prone, left_side, right_side
 };
 
+/// The body goes on with the motion that it had before the blow, and that motion is known.
+struct GoesOn {
+  double time_s = 0.0;    // since then
+  double moment_s = 0.0;  // where that motion is then, s from the blow
+};
+
 /// What a behaviour did.
 struct ControllerReport {
   std::vector<StepTaken> steps;
@@ -50,8 +56,7 @@ struct ControllerReport {
   std::optional<double> knocked_out_s;  // from then on nobody was there
   std::vector<BehaviourEvent> events;
   FallReport fall;
-  /// It goes on as it did before the blow, since the end of the run: the moment of that motion, s from the blow.
-  std::optional<double> goes_on_from_s;
+  std::optional<GoesOn> goes_on;  // with which the run ends
 };
 
 /// A behaviour. Its state changes in start() and observe() alone, so that a rejected step needs no undo.

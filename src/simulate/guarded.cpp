@@ -63,6 +63,9 @@ class Guarded : public Controller {
   bool done() const override {
     return guard([&] { return inner_->done(); });
   }
+  bool over() const override {
+    return guard([&] { return inner_->over(); });
+  }
   bool hopeless() const override {
     return guard([&] { return inner_->hopeless(); });
   }

@@ -95,7 +95,7 @@ TEST(PropsBefore, MarksAndImpactMoveWithTheLead) {
 /// Places after the end, where a clip goes back to its start in 1 s.
 std::vector<Rigid> after(const Prop& prop) {
   Stage stage(prop);
-  const Status status = add_recovery(stage.actor(), 1.0, RecoverTo::rest, kGravity, stage.timeline);
+  const Status status = add_recovery(stage.actor(), 1.0, {RecoverTo::rest, std::nullopt}, kGravity, stage.timeline);
   EXPECT_TRUE(status) << status.error().message();
   EXPECT_EQ(stage.poses().size(), prop.poses.size() + 50);
   EXPECT_EQ(stage.poses().size(), stage.timeline.clip.frames.size());
