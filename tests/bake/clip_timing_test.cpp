@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/response.h"
 #include "clip/ground_motion.h"
 #include "clip/root_motion.h"
 #include "clip/smooth.h"
 #include "clip/start.h"
 #include "export/additive.h"
 #include "load/load.h"
+#include "prepare/direction.h"
 
 namespace ukemi {
 namespace {
@@ -176,6 +178,58 @@ TEST(Recovery, ToAClipNeedsOne) {
   const auto outcome = bake(mannequin(), settings, diagnostics);
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().what, "--to clip needs a start clip to go back to");
+}
+
+/// Hit on the chest while he walks, by so much of what the ball has.
+BakeSettings hit_while_walking(double strength) {
+  BakeSettings settings;
+  settings.clip = "walk";
+  settings.at_s = 0.278;
+  settings.recover_to = RecoverTo::clip;
+  settings.scene = strength > 0.0 ? SceneKind::impulse : SceneKind::none;
+  settings.strength = strength > 0.0 ? strength : 1.0;
+  return settings;
+}
+
+/// The last frame is the clip at the moment that the body has come to, wherever he is by then.
+void expect_goes_on(const BakedClip& outcome) {
+  ASSERT_TRUE(outcome.behaviour.goes_on);
+  EXPECT_FALSE(outcome.behaviour.fall_begins_s);
+  EXPECT_LT(outcome.timeline.clip.duration_s(), 3.0);
+  EXPECT_GT(outcome.returns_s, 0.1);
+  const Clip& clip = outcome.timeline.clip;
+  const int frames = static_cast<int>(std::ceil(outcome.returns_s * clip.fps - 1e-9));
+  const Pose there = unhit_pose(mannequin().skeleton, outcome.prepared.humanoid, outcome.prepared.start,
+                                outcome.behaviour.goes_on->moment_s + frames / clip.fps);
+  const Pose& last = clip.frames.back();
+  const int hips = outcome.prepared.humanoid.segments[index(Segment::pelvis)].node();
+  for (int i = 0; i < mannequin().skeleton.size(); ++i) {
+    if (i == hips) continue;
+    EXPECT_LT(degrees(angle_between(last[i].rotation, there[i].rotation)), 0.01) << i;
+  }
+  EXPECT_EQ(outcome.limits.over_1deg, 0);
+}
+
+TEST(GoingOn, WhoWalksUnhitWalksOn) { expect_goes_on(baked(hit_while_walking(0.0))); }
+
+TEST(GoingOn, WhoIsHitALittleWalksOn) {
+  const BakedClip outcome = baked(hit_while_walking(0.33));
+  expect_goes_on(outcome);
+  EXPECT_GT(outcome.behaviour.steps.size(), 2u);
+  const Response response = response_of(outcome);
+  EXPECT_GT(response.travel_m.norm(), 0.8) << "and gets on";
+}
+
+TEST(GoingOn, WhoIsHitTooHardComesToStandAndItIsSaid) {
+  BakeSettings settings = hit_while_walking(1.0);
+  settings.from = *parse_direction("left");
+  Diagnostics diagnostics;
+  const auto outcome = bake(mannequin(), settings, diagnostics);
+  ASSERT_TRUE(outcome);
+  EXPECT_FALSE(outcome->behaviour.goes_on);
+  EXPECT_FALSE(outcome->behaviour.fall_begins_s);
+  ASSERT_FALSE(diagnostics.warnings().empty());
+  EXPECT_NE(diagnostics.warnings().back().what.find("he comes to stand"), std::string::npos);
 }
 
 /// The mannequin with a thumb that turns steadily, 1 rad/s, in its clip "walk".

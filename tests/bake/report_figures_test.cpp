@@ -86,6 +86,7 @@ class ReportFigures : public testing::Test {
     b.steps = {{Segment::foot_l, 0.11, 0.29, 0.61}};
     b.fall_begins_s = 0.33;
     b.knocked_out_s = 0.37;
+    b.goes_on = GoesOn{0.43, 0.9};
     b.fall.knee = TouchDown{Segment::shank_l, 0.43, 1.9};
     f.touch_down = {};
     f.touch_down[index(Segment::chest)] = {Segment::chest, 0.39, 2.7};
@@ -231,6 +232,7 @@ void expect_response(Expected& e) {
   e.is(r + "travel_m/0", 0.3), e.is(r + "travel_m/1", -0.2), e.is(r + "travel_m/2", 0.9);
   e.is(r + "turn_deg", 25.0), e.is(r + "delivered_n_s", 21.0), e.is(r + "trials", 3.0);
   e.is(r + "score", 0.875), e.is(r + "assist_n_s", 4.5);
+  e.is(r + "goes_on_s", 0.63);
 }
 
 void expect_simulation(Expected& e) {

@@ -45,6 +45,7 @@ TEST(Needs, ASettingWithoutWhatItNeedsIsNamed) {
 TEST(Needs, ASettingWithWhatItNeedsIsNot) {
   EXPECT_EQ(said_of({}), Said{});
   EXPECT_EQ(said_of({{"to", "clip"}, {"recover", "1"}}), Said{});
+  EXPECT_EQ(said_of({{"to", "clip"}, {"clip", "walk"}}), Said{}) << "who walks goes on";
   EXPECT_EQ(said_of({{"fall-height", "1"}}, SceneKind::fall), Said{});
   EXPECT_EQ(said_of({{"tone", "1"}, {"behaviour", "limp"}}), Said{});
   EXPECT_EQ(said_of({{"slope-deg", "30"}, {"ball-radius", "0.1"}}, SceneKind::slope), Said{});
