@@ -185,7 +185,6 @@ bool Standing::in_air(const Senses& senses, const Leg& leg) const {
 /// The start of a body under way: a foot in the air goes on with its step.
 void Standing::take_over(const Senses& senses) {
   under_way_ = senses.pose;
-  begun_s_ = senses.time_s;
   for (const BodySide side : kSides) points_[ukemi::index(side)] = leg(side).yaw(senses);
   std::optional<BodySide> first;
   for (const BodySide side : kSides) {
@@ -212,7 +211,7 @@ Quat Standing::taken_over(const Senses& senses, Joint joint, const Quat& goal, d
   if (!under_way_) return goal;
   const Quat was = (*under_way_)[ukemi::index(parent_of(joint))].rotation.conjugate() *
                    (*under_way_)[ukemi::index(child_of(joint))].rotation;
-  return was.slerp(min_jerk((senses.time_s - begun_s_ - s(from_s)) / s(until_s - from_s)), goal);
+  return was.slerp(min_jerk((senses.time_s - s(from_s)) / s(until_s - from_s)), goal);
 }
 
 void Standing::observe(const Senses& senses, double h) {

@@ -132,7 +132,6 @@ class Standing : public OnFeet {
   PerSide<Leg> legs_;
   BodyPose home_;
   std::optional<BodyPose> under_way_;  // pose at the start of a body under way
-  double begun_s_ = 0.0;
   Flinch flinch_;
   PerSide<Vec2> home_sole_;
   Vec2 home_com_ = Vec2::Zero();  // from the middle of the soles

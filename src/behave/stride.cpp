@@ -53,13 +53,11 @@ constexpr double kTrunk = 1.0, kArm = 0.7;
 constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
 constexpr double kAhead_s = 0.004;  // postures are compared over so long
 
-// When it is given up, and when it goes well.
-constexpr double kDecides_s = 0.05;                         // a blow is felt so soon
-constexpr double kTooFarAside = 0.10, kTooFarAhead = 0.20;  // m: of the capture point, until then
-constexpr double kSunk = 0.6;                               // of the height of a body that stands
-constexpr double kOutOfReach = 0.9;                         // of the leg: of the capture point
-constexpr double kWell = 0.15, kWell_m_s = 0.35;            // m, m/s: of the capture point and the speed
-constexpr double kWellFor_s = 0.4, kLeast_s = 1.2;         // it is seen to go on for so long after the blow
+// When balance is lost, and when it goes well.
+constexpr double kSunk = 0.6;                       // of the height of a body that stands
+constexpr double kOutOfReach = 0.9;                 // of the leg: of the capture point
+constexpr double kWell = 0.15, kWell_m_s = 0.35;    // m, m/s: of the capture point and the speed
+constexpr double kWellFor_s = 0.4, kLeast_s = 1.2;  // it is seen to go on for so long after the blow
 
 }  // namespace
 
@@ -84,9 +82,7 @@ struct Striding::View {
 
 Striding::Striding(const ArticulatedBody& body, const BodyPose& home, double gravity,
                    const StandSettings& settings, std::shared_ptr<const Gait> gait)
-    : body_(body),
-      home_(home),
-      settings_(settings),
+    : settings_(settings),
       physique_(body, Leg(body, home, BodySide::left).length_m(), gravity),
       legs_{Leg(body, home, BodySide::left), Leg(body, home, BodySide::right)},
       gait_(std::move(gait)),
@@ -104,46 +100,35 @@ void Striding::start(const Senses& senses) {
     f.planted = senses.pose[ukemi::index(leg(side).foot)].translation;
     if (!f.stands) steps_.push_back({leg(side).foot, 0.0, std::nullopt, 0.0});
   }
-  if (too_much(view_of(senses))) return stop(senses);
   ask(senses);
 }
 
 void Striding::observe(const Senses& senses, double h) {
   time_s_ = senses.time_s;
-  if (stops_) {
-    stops_->observe(senses, h);
-    steps_.resize(strides_);
-    steps_.insert(steps_.end(), stops_->steps().begin(), stops_->steps().end());
-    if (stops_->lost_s() && !lost_s()) lose(*stops_->lost_s(), stops_->lost_why().c_str());
-    return;
-  }
   feel_feet(senses, h);
   pace_ = pace(view_of(senses));
   phase_s_ += pace_ * h;
   if (!lost_s()) change_feet(senses);
   const View view = view_of(senses);
-  if (time_s_ <= s(kDecides_s) && too_much(view)) return stop(senses);
   sunk_m_ += std::min(1.0, h / s(kGivesWay_s)) * (out_of_reach(senses, view) - sunk_m_);
   watch(senses, view, h);
   ask(senses);
 }
 
 void Striding::drive(Goals& goals) const {
-  if (stops_) return stops_->drive(goals);
   for (int j = 0; j < kJointCount; ++j)
     goals.joints[j].insert(goals.joints[j].end(), asked_.joints[j].begin(), asked_.joints[j].end());
   goals.firm_soles = goals.firm_soles || asked_.firm_soles;
 }
 
 std::optional<BodySide> Striding::swinging() const {
-  if (stops_) return stops_->swinging();
   for (const BodySide side : kSides)
     if (!foot(side).stands) return side;
   return std::nullopt;
 }
 
 std::optional<GoesOn> Striding::goes_on() const {
-  if (stops_ || lost_s() || well_s_ < s(kWellFor_s) || time_s_ < s(kLeast_s)) return std::nullopt;
+  if (lost_s() || well_s_ < s(kWellFor_s) || time_s_ < s(kLeast_s)) return std::nullopt;
   return GoesOn{time_s_, phase_s_};
 }
 
@@ -374,24 +359,6 @@ double Striding::out_of_reach(const Senses& senses, const View& view) const {
     deepest = std::max(deepest, gait_->pose(stand->from_s)[0].translation.y() - height);
   }
   return std::min(deepest, m(kDeepest));
-}
-
-/// A blow after which nobody goes on.
-bool Striding::too_much(const View& view) const {
-  const double ahead = view.error.dot(heading());
-  const Vec2 aside = view.error - ahead * heading();
-  return aside.norm() > m(kTooFarAside) || std::abs(ahead) > m(kTooFarAhead);
-}
-
-/// Gives the gait up: comes to stand.
-void Striding::stop(const Senses& senses) {
-  StandSettings settings = settings_;
-  if (!settings.under_way) settings.under_way.emplace();
-  for (auto& lands_s : settings.under_way->lands_in_s)
-    if (lands_s) lands_s = std::max(0.0, *lands_s - time_s_);
-  steps_.clear();
-  stops_ = std::make_unique<Standing>(body_, home_, physique_.gravity, settings);
-  stops_->start(senses);
 }
 
 void Striding::watch(const Senses& senses, const View& view, double h) {

@@ -3,7 +3,6 @@
 // The body does what its clip does, and three things beside it: the legs on the ground push as the weight and
 // the speed of the clip ask and as the balance needs; feet land where the capture point will be from them as
 // in the clip; and the clip waits for a foot that is late and goes on faster with a body that is ahead of it.
-// After a blow that no gait survives it comes to stand, as Standing does.
 #pragma once
 
 #include <memory>
@@ -20,7 +19,7 @@ namespace ukemi {
 
 class Striding : public OnFeet {
  public:
-  /// `home`: the pose that is stood in when the gait is given up. `body` and `home` must outlive this.
+  /// `home`: the pose that the body stands in.
   Striding(const ArticulatedBody& body, const BodyPose& home, double gravity, const StandSettings& settings,
            std::shared_ptr<const Gait> gait);
 
@@ -30,7 +29,7 @@ class Striding : public OnFeet {
 
   const std::vector<StepTaken>& steps() const override { return steps_; }
   std::optional<BodySide> swinging() const override;
-  bool calm() const override { return stops_ && stops_->calm(); }
+  bool calm() const override { return false; }
   std::optional<GoesOn> goes_on() const override;
   const Physique& physique() const override { return physique_; }
 
@@ -73,8 +72,6 @@ class Striding : public OnFeet {
   Vec2 error_at_landing(const View& view, BodySide side, double left_s) const;
   Vec2 landing_place(const View& view, BodySide side) const;
   double out_of_reach(const Senses& senses, const View& view) const;
-  bool too_much(const View& view) const;
-  void stop(const Senses& senses);
   void watch(const Senses& senses, const View& view, double h);
 
   // What is asked of the muscles.
@@ -85,8 +82,6 @@ class Striding : public OnFeet {
   LegPosture posture(const BodyPose& gait, BodySide side, const Vec3& hip, const Vec3& ankle) const;
   Vec3 swing_ankle(const BodyPose& gait, const View& view, BodySide side, double phase_s) const;
 
-  const ArticulatedBody& body_;
-  const BodyPose& home_;
   StandSettings settings_;
   Physique physique_;
   PerSide<Leg> legs_;
@@ -101,8 +96,6 @@ class Striding : public OnFeet {
   double well_s_ = 0.0;   // it has gone as the gait does for so long
   PerSide<Foot> feet_;
   std::vector<StepTaken> steps_;
-  std::unique_ptr<Standing> stops_;  // since it has given the gait up
-  std::size_t strides_ = 0;          // steps until then
   Goals asked_;
 };
 
