@@ -44,9 +44,9 @@ void vary(StandSettings& stand, std::uint64_t seed) {
     value *= random.uniform(1.0 - spread, 1.0 + spread);
   };
   times(stand.latency_s, 0.15);
-  times(stand.lift_s, 0.15);
-  times(stand.swing_s, 0.06);
-  times(stand.step_scale, 0.04);
+  times(stand.lift_s, 0.25);
+  times(stand.swing_s, 0.08);
+  times(stand.step_scale, 0.09);
   for (double& arm : stand.arm_size) times(arm, 0.3);
   times(stand.flinch.left_arm, 0.3);
   times(stand.flinch.right_arm, 0.3);
