@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "behave/legs.h"
 #include "body/on_ground.h"
+#include "feet/legs.h"
 #include "judge/events.h"
 #include "judge/signal.h"
 

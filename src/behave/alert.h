@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "behave/fall.h"
-#include "behave/on_feet.h"
+#include "feet/on_feet.h"
 
 namespace ukemi {
 

@@ -4,8 +4,8 @@
 
 #include "base/random.h"
 #include "behave/alert.h"
-#include "behave/stride.h"
 #include "behave/tone.h"
+#include "feet/stride.h"
 
 namespace ukemi {
 namespace {

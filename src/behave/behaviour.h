@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "behave/knocked_out.h"
-#include "behave/stand.h"
 #include "body/muscles.h"
+#include "feet/stand.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {

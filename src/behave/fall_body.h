@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "behave/sides.h"
 #include "body/body.h"
 #include "body/muscles.h"
+#include "feet/sides.h"
 #include "physics/senses.h"
 #include "restrict/range_of_motion.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "behave/fall_way.h"
-#include "behave/sides.h"
+#include "feet/sides.h"
 
 namespace ukemi {
 

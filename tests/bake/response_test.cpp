@@ -8,7 +8,7 @@
 
 #include "bake/bake.h"
 #include "base/character_path.h"
-#include "behave/legs.h"
+#include "feet/legs.h"
 #include "load/load.h"
 #include "simulate/standing_man.h"
 

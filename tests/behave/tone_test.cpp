@@ -5,7 +5,7 @@
 #include "behave/alert.h"
 #include "behave/fallen_man.h"
 #include "behave/knocked_out.h"
-#include "behave/stand.h"
+#include "feet/stand.h"
 
 namespace ukemi {
 namespace {

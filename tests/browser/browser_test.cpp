@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
@@ -61,6 +62,17 @@ class Browser : public testing::Test {
   fs::path folder;
 };
 
+/// Where the node of a segment is at a time of a file's last clip, metres.
+Vec3 place_of(const fs::path& file, Segment segment, double time_s) {
+  Diagnostics diagnostics;
+  const auto character = load_character(file, {}, diagnostics);
+  const auto humanoid = map_humanoid(*character, {}, diagnostics);
+  const Animation& clip = character->animations.back();
+  const Pose pose = sample(character->skeleton, clip, clip.start_s + time_s);
+  const int node = humanoid->segments[index(segment)].node();
+  return humanoid->world_from_file * Vec3(world_transforms(character->skeleton, pose)[node].translation());
+}
+
 /// Places of all nodes of a file's last clip, metres.
 Json judged(const fs::path& file, const std::string& id) {
   Diagnostics diagnostics;
@@ -82,6 +94,26 @@ Json judged(const fs::path& file, const std::string& id) {
   return json;
 }
 
+/// A reaction of the batch with steps: when and where its feet came down, as report and clip tell.
+Json stepping(const fs::path& batch) {
+  for (const char* name : {"chest_left", "chest_front", "head_left", "head_front"}) {
+    std::ifstream stream(batch / "mannequin" / (std::string(name) + ".json"));
+    const Json steps = Json::parse(stream).at("response").at("steps");
+    const fs::path clip = batch / "mannequin" / (std::string(name) + ".glb");
+    Json json{{"id", std::string("mannequin/") + name}, {"contacts", Json::array()}};
+    for (const Json& step : steps) {
+      if (step.at("contact_s").is_null()) continue;
+      const bool left = step.at("foot") == "l";
+      const double time_s = step.at("contact_s");
+      const Vec3 ankle = place_of(clip, left ? Segment::foot_l : Segment::foot_r, time_s);
+      json["contacts"].push_back(
+          {{"side", left ? "left" : "right"}, {"time_s", time_s}, {"ankle", {ankle.x(), ankle.z()}}});
+    }
+    if (!json["contacts"].empty()) return json;
+  }
+  return {};
+}
+
 TEST_F(Browser, ServesAReviewer) {
   ASSERT_TRUE(write_file(folder / "few.toml", kRecipe));
   program(
@@ -97,6 +129,7 @@ TEST_F(Browser, ServesAReviewer) {
   const Json work{{"folder", (folder / "batch").string()},
                   {"reactions", 6},
                   {"judged", judged(clip, "mannequin/head_left")},
+                  {"stepping", stepping(folder / "batch")},
                   {"hostile", {{"folder", (folder / "hostile").string()}, {"name", kHostileName}}}};
   ASSERT_TRUE(write_file(folder / "work.json", work.dump()));
   const auto [output, status] = run_command(

@@ -148,6 +148,21 @@ async function playAndScrub(page) {
   check('the ranges are drawn over it', !(await stage.screenshot()).equals(later));
 }
 
+/// The steps of a reaction as its report tells them leave prints where its feet are.
+async function printsOfFeet(page) {
+  const { id, contacts } = work.stepping;
+  await showAt(page, id, 0);
+  const start = (await player(page, 'printsAt(0)')).length;
+  const end = await player(page, 'printsAt(1e9)');
+  check('every step leaves a print', contacts.length > 0 && end.length - start === contacts.length, `${end.length - start} of ${contacts.length}`);
+  const after = await player(page, `printsAt(${contacts[0].time_s + 0.01})`);
+  check('from its contact on', after.length === start + 1 && after.at(-1).side === contacts[0].side, JSON.stringify(after));
+  const [x, z] = after.at(-1).place;
+  const far = Math.hypot(x - contacts[0].ankle[0], z - contacts[0].ankle[1]);
+  check('under the foot', far < 0.1, `${far.toFixed(3)} m from the ankle`);
+  await showAt(page, work.judged.id, 0);
+}
+
 async function placesOfJoints(page) {
   let largest = 0;
   let compared = 0;
@@ -320,6 +335,7 @@ await filtersAndOrder(page);
 const order = await judgeByKeys(page);
 await exportAndImport(browser, page, order);
 await playAndScrub(page);
+await printsOfFeet(page);
 await placesOfJoints(page);
 await rangesOfJoints(page);
 await sideBySide(page);

@@ -14,10 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // In the order of the pipeline.
-constexpr std::string_view kRooms[] = {"base",    "load",     "bones",  "humanoid", "restrict", "body",
-                                       "physics", "simulate", "behave", "rise",     "export",   "fbx",
-                                       "render",  "clip",     "judge",  "prepare",  "bake",     "check",
-                                       "study",   "batch",    "review", "cli"};
+constexpr std::string_view kRooms[] = {"base",    "load",     "bones", "humanoid", "restrict", "body",
+                                       "physics", "simulate", "feet",  "behave",   "rise",     "export",
+                                       "fbx",     "render",   "clip",  "judge",    "prepare",  "bake",
+                                       "check",   "study",    "batch", "review",   "cli"};
 
 // Rooms that never include each other.
 const std::vector<std::vector<std::string_view>> kApart = {{"export", "render"},

@@ -102,6 +102,14 @@ export class Motion {
     return target.setFromMatrixPosition(this.nodes[node].matrixWorld);
   }
 
+  /// Where the foot below an ankle points, along the floor: to its toes, or as the figure faces where it has none.
+  footWay(ankle) {
+    const toes = this.character.nodes.findIndex(({ parent }) => parent === ankle.origin);
+    const way = toes < 0 ? new THREE.Vector3() : this.place(toes).sub(this.place(ankle.origin)).setY(0);
+    if (way.lengthSq() < 1e-4) way.fromArray(this.clip.forward).setY(0);
+    return way.normalize();
+  }
+
   /// Places of a node over the whole clip.
   pathOf(node, samples = 90) {
     const before = this.time;

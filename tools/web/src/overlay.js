@@ -1,7 +1,8 @@
 // Over the figure: its joints coloured by how near they are to the edge of their range, the selected joint's range as a
-// patch of the sphere that its link sweeps, the way of the hips, the blow.
+// patch of the sphere that its link sweeps, the way of the hips, the prints of its feet, the blow.
 import * as THREE from 'three';
 import { linkDirection, NEAR_DEG, OUTSIDE_DEG } from './motion.js';
+import { Prints } from './prints.js';
 
 const RINGS = 8;
 const PER_EDGE = 6;
@@ -55,6 +56,8 @@ export class Overlay {
     this.makePatch();
     this.makeTrail();
     this.makeArrow();
+    this.prints = new Prints(motion, this.scale);
+    this.group.add(this.prints.group);
     this.select(motion.worstJoint());
   }
 
@@ -134,6 +137,7 @@ export class Overlay {
   update(ranges) {
     const { motion, colors } = this;
     this.dots.visible = ranges;
+    this.prints.update(motion.time);
     this.patch.visible = ranges && motion.joints.length > 0;
     if (this.arrow) {
       const since = motion.time - this.impactTime;

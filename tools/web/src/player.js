@@ -416,6 +416,14 @@ export class Player extends EventTarget {
     actions[name]();
   }
 
+  /// Prints of feet on the floor at a time, left and right: for scripts.
+  printsAt(time) {
+    this.seek(time, true);
+    const { prints } = theStage().views[0].overlay;
+    prints.update(this.time);
+    return prints.shown();
+  }
+
   /// Places of all nodes of the shown clip at a time, metres, where the file puts them: for scripts.
   placesAt(time) {
     this.seek(time, true);

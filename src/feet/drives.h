@@ -1,7 +1,7 @@
 // Springs towards postures, as strong as people's muscles are.
 #pragma once
 
-#include "behave/physique.h"
+#include "feet/physique.h"
 #include "physics/goals.h"
 
 namespace ukemi {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "behave/drives.h"
-#include "behave/flinch.h"
-#include "behave/legs.h"
-#include "behave/on_feet.h"
-#include "behave/physique.h"
+#include "feet/drives.h"
+#include "feet/flinch.h"
+#include "feet/legs.h"
+#include "feet/on_feet.h"
+#include "feet/physique.h"
 #include "simulate/controller.h"
 
 namespace ukemi {

@@ -1,4 +1,4 @@
-#include "behave/gait.h"
+#include "feet/gait.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "behave/drives.h"
+#include "feet/drives.h"
 
 namespace ukemi {
 namespace {

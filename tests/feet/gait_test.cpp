@@ -1,5 +1,5 @@
 // What is read out of a gait.
-#include "behave/gait.h"
+#include "feet/gait.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "behave/legs.h"
+#include "feet/legs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "behave/stride.h"
+#include "feet/stride.h"
 
 #include <algorithm>
 #include <cmath>

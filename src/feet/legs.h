@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "behave/sides.h"
 #include "body/body.h"
+#include "feet/sides.h"
 #include "physics/senses.h"
 
 namespace ukemi {

@@ -1,4 +1,4 @@
-#include "behave/physique.h"
+#include "feet/physique.h"
 
 #include <cmath>
 

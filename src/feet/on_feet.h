@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "behave/physique.h"
-#include "behave/sides.h"
+#include "feet/physique.h"
+#include "feet/sides.h"
 #include "simulate/controller.h"
 
 namespace ukemi {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "behave/legs.h"
+#include "feet/legs.h"
 
 namespace ukemi {
 

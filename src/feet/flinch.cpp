@@ -1,4 +1,4 @@
-#include "behave/flinch.h"
+#include "feet/flinch.h"
 
 #include "body/on_ground.h"
 

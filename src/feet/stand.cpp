@@ -1,4 +1,4 @@
-#include "behave/stand.h"
+#include "feet/stand.h"
 
 #include <algorithm>
 #include <cmath>

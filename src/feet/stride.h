@@ -9,11 +9,11 @@
 #include <optional>
 #include <vector>
 
-#include "behave/flinch.h"
-#include "behave/gait.h"
-#include "behave/on_feet.h"
-#include "behave/physique.h"
-#include "behave/stand.h"
+#include "feet/flinch.h"
+#include "feet/gait.h"
+#include "feet/on_feet.h"
+#include "feet/physique.h"
+#include "feet/stand.h"
 
 namespace ukemi {
 
