@@ -148,6 +148,21 @@ async function playAndScrub(page) {
   check('the ranges are drawn over it', !(await stage.screenshot()).equals(later));
 }
 
+/// A direction by two words is said in words.
+async function namesOfDirections(page) {
+  const told = await page.evaluate(() => {
+    const { player: shown } = globalThis.ukemi.page;
+    const kept = shown.reaction;
+    shown.reaction = { ...kept, settings: { ...kept.settings, from: 'front_left' } };
+    shown.tellHead();
+    const text = shown.title.textContent;
+    shown.reaction = kept;
+    shown.tellHead();
+    return text;
+  });
+  check('front left is told in words', told.includes('front left') && !told.includes('left°'), told);
+}
+
 /// The steps of a reaction as its report tells them leave prints where its feet are.
 async function printsOfFeet(page) {
   const { id, contacts } = work.stepping;
@@ -335,6 +350,7 @@ await filtersAndOrder(page);
 const order = await judgeByKeys(page);
 await exportAndImport(browser, page, order);
 await playAndScrub(page);
+await namesOfDirections(page);
 await printsOfFeet(page);
 await placesOfJoints(page);
 await rangesOfJoints(page);

@@ -9,7 +9,7 @@ const setting = (name) => (reaction) => {
   return known(value) ? String(value) : null;
 };
 
-const WORDS = { front: 0, left: 90, back: 180, right: -90 };
+const WORDS = { front: 0, front_left: 45, left: 90, back_left: 135, back: 180, back_right: -135, right: -90, front_right: -45 };
 
 /// Azimuth in degrees from the front towards the character's left, and elevation; null where nothing was told.
 export function directionOf(reaction) {
@@ -156,6 +156,6 @@ export function figuresOf(reaction) {
 /// "head · from the left · punch"
 export function summaryOf(reaction) {
   const from = setting('from')(reaction);
-  const side = from === null ? null : Object.hasOwn(WORDS, from) || from === 'above' ? from : `${from.replace(',', '°, ')}°`;
+  const side = from === null ? null : /^[-\d.]/.test(from) ? `${from.replace(',', '°, ')}°` : from.replaceAll('_', ' ');
   return [targetOf(reaction), side, strengthOf(reaction)].filter(known).join(' · ');
 }
