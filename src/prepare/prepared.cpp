@@ -103,7 +103,9 @@ void find_home(const Character& character, const BakeSettings& settings, Prepare
     segment = {turned * segment.rotation, to + turned * (segment.translation - from)};
   prepared.home = stand;
   prepared.behaviour.under_way = under_way_of(character, prepared);
-  if (settings.recover_to == RecoverTo::clip) go_on(character, settings, prepared);
+  const bool steps = prepared.behaviour.kind == Behaviour::alert && prepared.behaviour.most_steps > 0;
+  if (settings.recover_to == RecoverTo::clip && steps && settings.outcome != Wanted::fall)
+    go_on(character, settings, prepared);
 }
 
 }  // namespace

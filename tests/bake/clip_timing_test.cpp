@@ -232,6 +232,22 @@ TEST(GoingOn, WhoIsHitTooHardComesToStandAndItIsSaid) {
   EXPECT_NE(diagnostics.warnings().back().what.find("he comes to stand"), std::string::npos);
 }
 
+TEST(GoingOn, NobodyDoesWhoIsToKeepHisFeetInPlaceOrToFall) {
+  const auto goes_on = [](const BakeSettings& settings) {
+    Diagnostics diagnostics;
+    const auto prepared = prepare_bake(mannequin(), settings, diagnostics);
+    return prepared && prepared->behaviour.goes_on != nullptr;
+  };
+  BakeSettings planted = hit_while_walking(0.33), falls = planted, dazed = planted;
+  EXPECT_TRUE(goes_on(planted));
+  planted.most_steps = 0.0;
+  falls.outcome = Wanted::fall;
+  dazed.behaviour = Behaviour::dazed;
+  EXPECT_FALSE(goes_on(planted));
+  EXPECT_FALSE(goes_on(falls));
+  EXPECT_FALSE(goes_on(dazed));
+}
+
 /// The mannequin with a thumb that turns steadily, 1 rad/s, in its clip "walk".
 Character with_turning_thumb(int& thumb) {
   Character character = mannequin();
