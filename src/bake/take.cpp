@@ -23,15 +23,18 @@ namespace {
 constexpr double kGoesOn_s = 0.4;                 // of the blend into the start clip of who goes on with it
 constexpr double kMostTransforms = 16'777'216.0;  // of a clip: 9 GB while its keys are reduced
 
-/// Keeps `hold_s` after the moment everything rests.
-void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_time_s, double hold_s) {
-  if (!rest_time_s) return;
-  const double end = std::ceil((*rest_time_s + hold_s) * trajectory.fps - 1e-9);
-  const auto frames = static_cast<std::size_t>(std::max(end, 0.0)) + 1;
+void keep_frames(std::size_t frames, Trajectory& trajectory) {
   if (frames >= trajectory.frames.size()) return;
   trajectory.frames.resize(frames);
   for (Prop& prop : trajectory.props)
     if (prop.poses.size() > frames) prop.poses.resize(frames);
+}
+
+/// Keeps `hold_s` after the moment everything rests.
+void trim_still_tail(Trajectory& trajectory, const std::optional<double>& rest_time_s, double hold_s) {
+  if (!rest_time_s) return;
+  const double end = std::ceil((*rest_time_s + hold_s) * trajectory.fps - 1e-9);
+  keep_frames(static_cast<std::size_t>(std::max(end, 0.0)) + 1, trajectory);
 }
 
 /// Farthest that a segment is from another pose's, m (a radian counts as 0.5 m).
@@ -121,12 +124,7 @@ void add_marks(const SimulationFigures& figures, const ControllerReport& behavio
 
 /// A run ends where the body goes on with its clip.
 void end_where_it_goes_on(const std::optional<GoesOn>& goes_on, Trajectory& trajectory) {
-  if (!goes_on) return;
-  const auto frames = static_cast<std::size_t>(goes_on->time_s * trajectory.fps + 1e-9) + 1;
-  if (frames >= trajectory.frames.size()) return;
-  trajectory.frames.resize(frames);
-  for (Prop& prop : trajectory.props)
-    if (prop.poses.size() > frames) prop.poses.resize(frames);
+  if (goes_on) keep_frames(static_cast<std::size_t>(goes_on->time_s * trajectory.fps + 1e-9) + 1, trajectory);
 }
 
 /// Where the clip leads in the end: who goes on is at the moment of the clip that he has come to.
