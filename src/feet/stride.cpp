@@ -350,13 +350,16 @@ double Striding::out_of_reach(const Senses& senses, const View& view) const {
     const Leg& l = leg(side);
     const auto stand = stand_of(side);
     if (foot(side).stands || !stand || stand->from_s - phase_s_ > s(kComing_s)) continue;
-    const Vec3 hip = view.gait[0].rotation * l.hip_in_pelvis;
+    const BodyPose there = gait_->pose(stand->from_s);
+    const Rigid& gait_foot = there[ukemi::index(l.foot)];
+    const Vec3 hip = there[0].rotation * l.hip_in_pelvis;
     const Vec2 moves = std::max(0.0, stand->from_s - phase_s_) * view.velocity;
-    const double aside = (on_ground(senses.pose[0].translation + hip) + moves - foot(side).to).norm();
-    const double reach = kReached * l.length_m();
+    const Vec2 ankle = foot(side).to - on_ground(gait_foot.rotation * l.sole_middle);
+    const double aside = (on_ground(senses.pose[0].translation + hip) + moves - ankle).norm();
+    const double own = (gait_foot.translation - there[ukemi::index(l.thigh)].translation).norm();
+    const double reach = std::max(kReached * l.length_m(), own);
     const double up = std::sqrt(std::max(reach * reach - aside * aside, 0.4 * reach * reach));
-    const double height = l.home_ankle_m + up - hip.y();
-    deepest = std::max(deepest, gait_->pose(stand->from_s)[0].translation.y() - height);
+    deepest = std::max(deepest, there[0].translation.y() + hip.y() - up - gait_foot.translation.y());
   }
   return std::min(deepest, m(kDeepest));
 }

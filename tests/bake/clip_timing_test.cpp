@@ -222,7 +222,7 @@ TEST(GoingOn, WhoIsHitALittleWalksOn) {
 
 TEST(GoingOn, WhoIsHitTooHardComesToStandAndItIsSaid) {
   BakeSettings settings = hit_while_walking(1.0);
-  settings.from = *parse_direction("left");
+  settings.from = *parse_direction("back");
   Diagnostics diagnostics;
   const auto outcome = bake(mannequin(), settings, diagnostics);
   ASSERT_TRUE(outcome);
