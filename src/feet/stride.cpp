@@ -343,7 +343,8 @@ Vec2 Striding::landing_place(const View& view, BodySide side) const {
   return com_then + from_com;
 }
 
-/// How far below the gait's the pelvis must be for a foot that comes down to reach its place.
+/// How far below the gait's the pelvis must be for a foot that comes down to reach its place; taken to the
+/// middle of its sole, not to the ankle: who bends his knees more steps more surely.
 double Striding::out_of_reach(const Senses& senses, const View& view) const {
   double deepest = 0.0;
   for (const BodySide side : kSides) {
@@ -354,10 +355,8 @@ double Striding::out_of_reach(const Senses& senses, const View& view) const {
     const Rigid& gait_foot = there[ukemi::index(l.foot)];
     const Vec3 hip = there[0].rotation * l.hip_in_pelvis;
     const Vec2 moves = std::max(0.0, stand->from_s - phase_s_) * view.velocity;
-    const Vec2 ankle = foot(side).to - on_ground(gait_foot.rotation * l.sole_middle);
-    const double aside = (on_ground(senses.pose[0].translation + hip) + moves - ankle).norm();
-    const double own = (gait_foot.translation - there[ukemi::index(l.thigh)].translation).norm();
-    const double reach = std::max(kReached * l.length_m(), own);
+    const double aside = (on_ground(senses.pose[0].translation + hip) + moves - foot(side).to).norm();
+    const double reach = kReached * l.length_m();
     const double up = std::sqrt(std::max(reach * reach - aside * aside, 0.4 * reach * reach));
     deepest = std::max(deepest, there[0].translation.y() + hip.y() - up - gait_foot.translation.y());
   }
