@@ -5,7 +5,6 @@
 // cost: CPU seconds of planning it, once more.
 // off balance: centre of mass outside the skin that bears (least of it with and without momentum), by phase.
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +19,7 @@
 #include "body/weight.h"
 #include "judge/judge.h"
 #include "rise/get_up.h"
+#include "stopwatch.h"
 
 namespace ukemi {
 namespace {
@@ -123,12 +123,6 @@ void see_motion(const BakedClip& outcome, const std::vector<BodyPose>& frames, R
       row.fastest =
           fmt::format("{} at {:.2f} s", name(segment_at(s)), (static_cast<double>(f) - first) / fps);
     }
-}
-
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 /// CPU time in which the get-up is planned: once more, from the frame in which it begins.

@@ -9,6 +9,7 @@
 
 #include "bake/bake.h"
 #include "blows.h"
+#include "stopwatch.h"
 
 namespace ukemi {
 namespace {
@@ -20,12 +21,6 @@ struct ReactionRow {
   double excess = 0.0, gain = 0.0, share = 0.0, rest_s = 0.0, separation = 0.0;
   double cpu_s = 0.0, slide_m = 0.0, end_m = 0.0;
 };
-
-double cpu() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 ReactionRow run(const Character& character, BakeSettings settings, const std::string& segment, double azimuth,
                 double n_s) {
@@ -41,7 +36,7 @@ ReactionRow run(const Character& character, BakeSettings settings, const std::st
   Scene scene = prepared->scene;
   scene.kind = SceneKind::impulse;
   scene.impulse_n_s = momentum_for(prepared->body, n_s);
-  const double before = cpu();
+  const double before = thread_seconds();
   auto result = simulate(simulation_input(*prepared, scene, settings.simulation), diagnostics);
   for (const Choice& choice : choices_for(settings)) {
     if (!settings.outcome) break;
@@ -56,7 +51,7 @@ ReactionRow run(const Character& character, BakeSettings settings, const std::st
       break;
     }
   }
-  row.cpu_s = cpu() - before;
+  row.cpu_s = thread_seconds() - before;
   if (!result) {
     fmt::print("{}\n", result.error().message());
     return row;

@@ -9,7 +9,6 @@
 // promise is printed with the command that bakes it again. Exit status: 0 nothing did, 1 something did, 2
 // wrong command line.
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <atomic>
@@ -25,6 +24,7 @@
 #include "base/random.h"
 #include "blows.h"
 #include "prepare/impact.h"
+#include "stopwatch.h"
 
 namespace ukemi {
 namespace {
@@ -60,12 +60,6 @@ struct StressRow {
   double excess_deg = 0.0, gain_j = 0.0, share = 0.0, separation_m = 0.0, cpu_s = 0.0, clip_s = 0.0;
   long rejected = 0;
 };
-
-double cpu_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 std::size_t below(Random& random, std::size_t count) { return random.next() % count; }
 
@@ -170,9 +164,9 @@ StressRow run(const StressCase& stress, bool twice) {
       return row;
     }
   Diagnostics diagnostics;
-  const double before = cpu_seconds();
+  const double before = thread_seconds();
   const auto baked = bake(stress.hero->character, settings, diagnostics);
-  row.cpu_s = cpu_seconds() - before;
+  row.cpu_s = thread_seconds() - before;
   for (const Warning& warning : diagnostics.warnings())
     row.again = row.again || warning.what.find("run again") != std::string::npos;
   if (!baked) {
