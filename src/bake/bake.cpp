@@ -272,15 +272,13 @@ void warn_of_unrest(const BakeSettings& settings, const BakedClip& baked, Diagno
                       simulated_s(settings)));
 }
 
-/// Who was to go on with his clip came to stand, or fell.
+/// Who was to go on with his clip came to stand.
 void warn_of_stopping(const BakedClip& baked, Diagnostics& diagnostics) {
   if (!baked.prepared.behaviour.goes_on || baked.behaviour.goes_on || baked.behaviour.fall_begins_s) return;
-  diagnostics.warn("",
-                   baked.returns_s > 0.0
-                       ? "he cannot go on with the clip after this blow: he comes to stand, and is blended "
-                         "into it from there"
-                       : "he cannot go on with the clip after this blow: he comes to stand; a weaker "
-                         "--strength lets him go on, --return S blends him into it");
+  diagnostics.warn(
+      "", fmt::format("he cannot go on with the clip from here: he comes to stand{}; a weaker --strength, "
+                      "another --at or another clip may let him",
+                      baked.returns_s > 0.0 ? ", and is blended into it" : ""));
 }
 
 }  // namespace
