@@ -249,11 +249,16 @@ void pelvis_by_name(const Reader& reader, Bones& bones) {
 /// the pelvis is another's head, or a control.
 bool lies_high(const Skeleton& skeleton, const Bones& bones, int head) {
   const std::vector<Affine> world = world_transforms(skeleton, rest_pose(skeleton));
-  const auto middle = [&](Segment left, Segment right) -> Vec3 {
-    return 0.5 * (world[bones[left]].translation() + world[bones[right]].translation());
+  const auto middle = [&](int left, int right) -> Vec3 {
+    return 0.5 * (world[left].translation() + world[right].translation());
   };
-  const Vec3 hips = middle(Segment::thigh_l, Segment::thigh_r);
-  const Vec3 trunk = middle(Segment::upperarm_l, Segment::upperarm_r) - hips;
+  const auto shoulder = [&](Segment arm, Segment clavicle) {
+    return bones[arm] >= 0 ? bones[arm] : bones[clavicle];
+  };
+  const Vec3 hips = middle(bones[Segment::thigh_l], bones[Segment::thigh_r]);
+  const Vec3 shoulders = middle(shoulder(Segment::upperarm_l, Segment::clavicle_l),
+                                shoulder(Segment::upperarm_r, Segment::clavicle_r));
+  const Vec3 trunk = shoulders - hips;
   return (world[head].translation() - hips).dot(trunk) >= 0.5 * trunk.squaredNorm();
 }
 

@@ -32,6 +32,7 @@ constexpr double kWellUp = 0.06;       // m: no foot rolls over its toes so high
 constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point so far beyond the feet
 constexpr double kOutOfStride = 1.4;   // the same while a stride that has begun is not at its end
 constexpr double kLongestStep = 1.03;  // of the leg
+constexpr double kAgain = 0.6;         // m: cost of a step with the foot that has just landed
 constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
 constexpr double kBearing_s = 0.02;    // until a foot off the ground pushes no more
 constexpr double kSlipped = 0.10;      // m: a foot that was moved so far stands there now
@@ -385,7 +386,7 @@ double Standing::cost_of(const View& view, BodySide swing) const {
   const double across = std::max(0.0, -own * view.right_part(view.icp - view.sole[standing]));
   const double too_far = std::max(0.0, (place - view.sole[standing]).norm() - 0.95 * physique_.leg_length_m);
   const double travel = (place - view.sole[ukemi::index(swing)]).norm();
-  const double again = view.time_s - landed_s_[ukemi::index(swing)] < s(0.3) ? m(0.15) : 0.0;
+  const double again = view.time_s - landed_s_[ukemi::index(swing)] < s(0.3) ? m(kAgain) : 0.0;
   return 5.0 * (across + too_far) + (place - view.sole[standing]).norm() + 0.3 * travel + again +
          (swing == BodySide::left ? m(settings_.foot_bias_m) : 0.0);
 }

@@ -289,7 +289,7 @@ void Striding::lift(const Senses& senses, BodySide side) {
   f.stands = f.in_air = false;
   f.lifted_s = phase_s_;
   ++f.stand;
-  const Vec3& gait = gait_->pose(phase_s_)[ukemi::index(leg(side).foot)].translation;
+  const Vec3 gait = gait_->pose(phase_s_)[ukemi::index(leg(side).foot)].translation;
   const Vec3& ankle = senses.pose[ukemi::index(leg(side).foot)].translation;
   f.off = ankle - gait;
   f.off -= at_height(on_ground(senses.com - gait_->com(phase_s_)), 0.0);

@@ -134,9 +134,10 @@ void Physics::restore() {
 }
 
 double Physics::accept(double time_s, double h) {
-  double work = scene_.work(time_s, h);
+  double work = scene_.work(time_s, h, saved_);
   help_n_s_ += h * help_n_.norm();
-  work += h * std::max(0.0, help_n_.dot(vec3(dBodyGetLinearVel(model_.bodies().front().id))));
+  const Vec3 pelvis_velocity = vec3(dBodyGetLinearVel(model_.bodies().front().id));
+  work += h * help_n_.dot(0.5 * (saved_.front().linear_velocity + pelvis_velocity));
   for (const Tone& tone : tone_) work += tone.work(h);
   muscle_share_ = 0.0;
   for (Muscle& muscle : muscles_) {

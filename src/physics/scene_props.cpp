@@ -226,12 +226,14 @@ void SceneProps::apply(double time_s) const {
   }
 }
 
-double SceneProps::work(double time_s, double h) const {
+double SceneProps::work(double time_s, double h, const std::vector<RigidState>& before) const {
   if (!pushing(time_s)) return 0.0;
   double work = 0.0;
-  for (const Load& load : scene_.loads)
-    work += h * scene_.push_force_n *
-            std::max(0.0, load.way.dot(vec3(dBodyGetLinearVel(body_of(load.segment).id))));
+  for (const Load& load : scene_.loads) {
+    const Vec3 start = before[static_cast<std::size_t>(model_.body_of(load.segment))].linear_velocity;
+    const Vec3 end = vec3(dBodyGetLinearVel(body_of(load.segment).id));
+    work += h * scene_.push_force_n * load.way.dot(0.5 * (start + end));
+  }
   return work;
 }
 

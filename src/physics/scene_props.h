@@ -21,8 +21,9 @@ class SceneProps {
   void begin(Diagnostics& diagnostics);
   /// Forces of the step that starts at `time_s`.
   void apply(double time_s) const;
-  /// Work on the body in a step of length h that starts at `time_s`, from the speed that it ends with, J.
-  double work(double time_s, double h) const;
+  /// Work on the body in a step of length h that starts at `time_s` with the model's bodies as they were
+  /// `before`, J.
+  double work(double time_s, double h, const std::vector<RigidState>& before) const;
   /// Kinetic and potential energy of the props, J.
   double prop_energy() const;
   /// The soles' friction, where it is not that of everything else.

@@ -9,6 +9,7 @@
 
 #include "bake/bake.h"
 #include "blows.h"
+#include "body/centre_of_mass.h"
 #include "stopwatch.h"
 
 namespace ukemi {
@@ -16,11 +17,22 @@ namespace {
 
 struct ReactionRow {
   char digit = '?';
-  bool fell = false, rested = false;
+  bool fell = false;
   long steps = 0, over = 0, rejected = 0;
-  double excess = 0.0, gain = 0.0, share = 0.0, rest_s = 0.0, separation = 0.0;
-  double cpu_s = 0.0, slide_m = 0.0, end_m = 0.0;
+  double excess = 0.0, gain = 0.0, share = 0.0, rest_s = 0.0, still_s = 0.0, separation = 0.0;
+  double cpu_s = 0.0;
 };
+
+/// When the centre of mass comes under 0.05 m/s and stays there, s.
+double still_since(const ArticulatedBody& body, const Trajectory& trajectory) {
+  constexpr double kStill_m_s = 0.05;
+  for (std::size_t i = trajectory.frames.size(); i-- > 1;) {
+    const Vec3 moved =
+        centre_of_mass(body, trajectory.frames[i]) - centre_of_mass(body, trajectory.frames[i - 1]);
+    if (moved.norm() * trajectory.fps > kStill_m_s) return static_cast<double>(i) / trajectory.fps;
+  }
+  return 0.0;
+}
 
 ReactionRow run(const Character& character, BakeSettings settings, const std::string& segment, double azimuth,
                 double n_s) {
@@ -66,7 +78,8 @@ ReactionRow run(const Character& character, BakeSettings settings, const std::st
     if (result->behaviour.fall_begins_s)
       fmt::print(" lost {:.2f} {}", *result->behaviour.fall_begins_s,
                  result->behaviour.events.empty() ? "" : result->behaviour.events.front().name);
-    fmt::print(" rest {:.2f}\n", result->figures.rest_time_s.value_or(-1.0));
+    fmt::print(" rest {:.2f} still {:.2f}\n", result->figures.rest_time_s.value_or(-1.0),
+               still_since(prepared->body, result->trajectory));
   }
   row.digit = row.fell ? 'F' : static_cast<char>('0' + std::min(9L, row.steps));
   row.over = result->limits.over_1deg;
@@ -75,7 +88,7 @@ ReactionRow run(const Character& character, BakeSettings settings, const std::st
   row.share = result->figures.muscle_share_max;
   row.separation = result->figures.joint_separation_max_m;
   row.rejected = result->figures.rejected_steps;
-  row.rested = result->figures.rest_time_s.has_value();
+  row.still_s = still_since(prepared->body, result->trajectory);
   row.rest_s = result->figures.rest_time_s.value_or(duration_of(settings.simulation));
   return row;
 }
@@ -116,7 +129,7 @@ int main(int argc, char** argv) {
   std::size_t i = 0;
   long over = 0;
   double excess = 0.0, gain = 0.0, share = 0.0, cpu_s = 0.0, separation = 0.0;
-  std::vector<int> up(momenta.size()), none(momenta.size()), late(momenta.size());
+  std::vector<int> up(momenta.size()), none(momenta.size()), late(momenta.size()), moving(momenta.size());
   std::vector<double> steps(momenta.size());
   for (const auto& s : segments) {
     fmt::print("{:<10}", s);
@@ -128,6 +141,7 @@ int main(int argc, char** argv) {
         up[m] += row.fell ? 0 : 1;
         none[m] += !row.fell && row.steps == 0 ? 1 : 0;
         late[m] += !row.fell && row.rest_s > 2.5 ? 1 : 0;
+        moving[m] += !row.fell && row.still_s > 2.5 ? 1 : 0;
         steps[m] += row.fell ? 0.0 : static_cast<double>(row.steps);
         over += row.over;
         excess = std::max(excess, row.excess);
@@ -142,8 +156,10 @@ int main(int argc, char** argv) {
   }
   const double n = static_cast<double>(segments.size() * directions.size());
   for (std::size_t m = 0; m < momenta.size(); ++m)
-    fmt::print("{:>4} N s: up {:3.0f} %, no step {:3.0f} %, steps {:.2f}, not at rest by 2.5 s {}\n",
-               momenta[m], 100 * up[m] / n, 100 * none[m] / n, steps[m] / std::max(up[m], 1), late[m]);
+    fmt::print(
+        "{:>4} N s: up {:3.0f} %, no step {:3.0f} %, steps {:.2f}, by 2.5 s {} not at rest, {} centres of mass "
+        "not under 0.05 m/s\n",
+        momenta[m], 100 * up[m] / n, 100 * none[m] / n, steps[m] / std::max(up[m], 1), late[m], moving[m]);
   fmt::print(
       "over 1 deg {}, worst {:.2f}, gain {:.2f} J, share {:.2f}, separation {:.1f} mm, {:.0f} ms a run\n",
       over, excess, gain, share, 1000 * separation, 1000 * cpu_s / static_cast<double>(jobs.size()));
