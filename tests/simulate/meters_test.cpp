@@ -286,15 +286,5 @@ TEST(Blow, WorkOfAPushIsNoEnergyFromNowhere) {
   EXPECT_LT(run.figures.energy_gain_max_j, 3.0);
 }
 
-TEST(Blow, WorkOfAPushThatAnArmBrakesIsNoEnergyFromNowhere) {
-  Scene scene;
-  scene.kind = SceneKind::push;
-  scene.target = Segment::hand_r;
-  scene.push_force_n = 400.0;
-  scene.push_duration_s = 0.2;
-  // The hand ends its steps slower than it begins them once the arm is stretched.
-  EXPECT_LT(adrift(scene).figures.energy_gain_max_j, 1.0);
-}
-
 }  // namespace
 }  // namespace ukemi

@@ -104,6 +104,28 @@ TEST(Muscles, WorkIsTheEnergyThatTheBodyGets) {
   EXPECT_NEAR(physics.muscle_work_j(), work, 1e-9);
 }
 
+TEST(Physics, WorkOfAPushIsTheEnergyThatTheBodyGets) {
+  const test::StandingMan man;
+  Scene scene;
+  scene.kind = SceneKind::push;
+  scene.direction = Vec3::UnitX();
+  scene.loads = {{Segment::hand_r, Vec3::UnitX()}};
+  scene.push_force_n = 60.0;
+  PhysicsSettings settings;
+  settings.gravity = 0.0;
+  settings.active = Active::off;
+  Physics physics(man.body, man.range, *load_active_thresholds(""), MuscleStrength{}, man.start(), scene,
+                  settings);
+  double work = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    physics.save();
+    physics.step(i * kStep_s, kStep_s, {}, {});
+    work += physics.accept(i * kStep_s, kStep_s);
+  }
+  ASSERT_GT(energy_of(physics), 0.5);
+  EXPECT_NEAR(work, energy_of(physics), 0.03 * energy_of(physics));
+}
+
 TEST(Physics, PutsWhatHitsBackWithTheBody) {
   test::StandingMan man;
   Scene scene;
