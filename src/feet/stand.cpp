@@ -33,6 +33,7 @@ constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture 
 constexpr double kOutOfStride = 1.4;   // the same while a stride that has begun is not at its end
 constexpr double kLongestStep = 1.03;  // of the leg
 constexpr double kAgain = 0.6;         // m: cost of a step with the foot that has just landed
+constexpr double kHovers = 0.015;      // m: a foot that is late and so near to the ground stands
 constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
 constexpr double kBearing_s = 0.02;    // until a foot off the ground pushes no more
 constexpr double kSlipped = 0.10;      // m: a foot that was moved so far stands there now
@@ -335,7 +336,9 @@ void Standing::swing_on(const Senses& senses, const View& view) {
   }
   const bool touches = leg(swing_.side).touches(senses);
   swing_.in_air = swing_.in_air || !touches;
-  if (touches && phase > (swing_.in_air ? 0.5 : 0.95)) land(senses, view);
+  // Legs that lean on one another may hold a foot just over the ground.
+  const bool hovers = phase > 1.0 && leg(swing_.side).lowest_corner(senses) < m(kHovers);
+  if (hovers || (touches && phase > (swing_.in_air ? 0.5 : 0.95))) land(senses, view);
 }
 
 void Standing::land(const Senses& senses, const View& view) {
@@ -444,13 +447,19 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
                            ? m(0.25)
                            : (first_stride ? kOutOfStride : kOutOfReach) * physique_.leg_length_m;
   const double tilt = (senses.pose[0].rotation * home_[0].rotation.conjugate() * Vec3::UnitY()).y();
-  // A long robe touches the ground beside feet that stand.
-  const bool touches =
-      senses.com.y() < kSinking * home_height_ &&
-      std::any_of(senses.contacts.begin(), senses.contacts.end(), [](const SegmentContact& c) {
-        return c.with == SegmentContact::With::floor && c.segment != Segment::foot_l &&
-               c.segment != Segment::foot_r;
-      });
+  // A long robe touches the ground beside feet that stand, and so does a shank above its ankle in a lunge.
+  const auto bears = [&](const SegmentContact& c) {
+    if (c.with != SegmentContact::With::floor) return false;
+    for (const Leg& l : legs_) {
+      if (c.segment == l.foot) return false;
+      const Vec3& knee = senses.pose[ukemi::index(l.shank)].translation;
+      const Vec3& ankle = senses.pose[ukemi::index(l.foot)].translation;
+      if (c.segment == l.shank && (c.place - ankle).norm() < (c.place - knee).norm()) return false;
+    }
+    return true;
+  };
+  const bool touches = senses.com.y() < kSinking * home_height_ &&
+                       std::any_of(senses.contacts.begin(), senses.contacts.end(), bears);
   const bool gives_in = settings_.gives_in_s && senses.time_s >= s(*settings_.gives_in_s);
   const char* why = gives_in                                ? "gives in"
                     : beyond(view.outer, view.icp) > reach  ? "icp"

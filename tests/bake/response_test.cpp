@@ -11,6 +11,7 @@
 #include "feet/legs.h"
 #include "load/load.h"
 #include "simulate/standing_man.h"
+#include "support/extra_data.h"
 
 namespace ukemi {
 namespace {
@@ -130,6 +131,28 @@ TEST(FootSlide, OfAFootWithoutLoadIsSmall) {
   const Response response = response_of(*baked);
   EXPECT_EQ(response.outcome, Outcome::stood);
   EXPECT_LT(response.foot_slide_max_m, 0.02);
+}
+
+/// The legs lean on one another after the first blow, and a shank touches the ground in the lunge after the
+/// second.
+TEST(Steps, CatchABlowToTheHeadFromTheSide) {
+  const auto data = extra_data();
+  if (!data) GTEST_SKIP() << kNoExtraData;
+  Diagnostics diagnostics;
+  const auto man =
+      load_character(*data / "characters/quaternius_fbx/Male_Casual.fbx", LoadOptions{}, diagnostics);
+  ASSERT_TRUE(man);
+  for (const double n_s : {25.9, 31.5}) {
+    BakeSettings settings;
+    settings.hit = Segment::head;
+    settings.from = *parse_direction("270");
+    settings.scene = SceneKind::impulse;
+    settings.ball_mass_kg = 1.0;
+    settings.ball_speed_m_s = n_s;
+    const auto baked = bake(*man, settings, diagnostics);
+    ASSERT_TRUE(baked);
+    EXPECT_EQ(response_of(*baked).outcome, Outcome::stepped) << n_s;
+  }
 }
 
 }  // namespace
