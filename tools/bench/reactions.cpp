@@ -157,7 +157,8 @@ int main(int argc, char** argv) {
   const double n = static_cast<double>(segments.size() * directions.size());
   for (std::size_t m = 0; m < momenta.size(); ++m)
     fmt::print(
-        "{:>4} N s: up {:3.0f} %, no step {:3.0f} %, steps {:.2f}, by 2.5 s {} not at rest, {} centres of mass "
+        "{:>4} N s: up {:3.0f} %, no step {:3.0f} %, steps {:.2f}, by 2.5 s {} not at rest, {} centres of "
+        "mass "
         "not under 0.05 m/s\n",
         momenta[m], 100 * up[m] / n, 100 * none[m] / n, steps[m] / std::max(up[m], 1), late[m], moving[m]);
   fmt::print(
