@@ -177,7 +177,7 @@ TEST(Recovery, ToAClipNeedsOne) {
   Diagnostics diagnostics;
   const auto outcome = bake(mannequin(), settings, diagnostics);
   ASSERT_FALSE(outcome);
-  EXPECT_EQ(outcome.error().what, "--to clip needs a start clip to go back to");
+  EXPECT_EQ(outcome.error().what, "--return-to clip needs a start clip to go back to");
 }
 
 /// Hit on the chest while he walks, by so much of what the ball has.
