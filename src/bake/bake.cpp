@@ -71,8 +71,8 @@ bool turns_freely(const BvhSource& bvh, const SegmentFrames& frames) {
   });
 }
 
-/// What is said of the clip of a BVH, whose joints have axes of their own: `first_frame` is the file with the
-/// clip's first frame alone.
+/// The extras of a BVH's clip. Its joints have axes of their own, which are read from `first_frame`: the file
+/// with only the first frame of the clip.
 Result<std::string> bvh_extras(const Character& character, const BakeSettings& settings,
                                const BakedClip& outcome, const Clip& clip, const std::string& first_frame) {
   Diagnostics said;
@@ -86,7 +86,7 @@ Result<std::string> bvh_extras(const Character& character, const BakeSettings& s
   SegmentFrames moved =
       moved_frames(character.skeleton, frames, clip.frames.front(), turned, bvh_nodes(character, humanoid),
                    written->skeleton, sample(written->skeleton, written->animations.front(), 0.0));
-  // Hinges of the source drop what they cannot do, rolls above all: readers have to find them anew.
+  // Joints with one or two channels lose part of a rotation, mostly the roll: readers find their own frames.
   if (character.bvh && !turns_freely(*character.bvh, frames)) moved.node.fill(-1);
   const ClipFacts facts{std::string(name(settings.ground.root_motion)), std::nullopt, std::move(*ranges)};
   return with_fps(animation_extras(written->skeleton, moved, outcome.timeline.clip.marks, facts), clip.fps);
@@ -247,21 +247,21 @@ Status check_combinations(const BakeSettings& settings) {
                        "give a lower cut-off, or more --fps");
   if (settings.additive != Additive::off && to_bvh)
     return usage_error("--additive is for glTF: a BVH cannot say what its motion is added to",
-                       "leave the .bvh away, or write it by a bake of its own");
+                       "leave out the .bvh, or write it by a bake of its own");
   if (settings.additive != Additive::off && (writes(OutputFormat::fbx) || writes(OutputFormat::vrma)))
     return usage_error("--additive is for glTF: engines that read FBX make a clip additive on import",
-                       "leave --additive away, and give the engine frame 0 as base pose");
+                       "leave out --additive, and give the engine frame 0 as base pose");
   if (settings.knockout && behaviour_settings(settings).kind == Behaviour::limp)
     return usage_error("--knockout-at is for a body that lives: a limp one is out from the start",
-                       "leave one of --knockout-at and --behaviour limp away");
+                       "leave out --knockout-at or --behaviour limp");
   if (settings.append && writes(OutputFormat::vrma))
-    return usage_error("--append is for glTF and FBX: a .vrma holds one motion", "leave the .vrma away");
+    return usage_error("--append is for glTF and FBX: a .vrma holds one motion", "leave out the .vrma");
   if (settings.append && to_bvh)
-    return usage_error("--append is for glTF and FBX: a BVH holds one motion", "leave the .bvh away");
+    return usage_error("--append is for glTF and FBX: a BVH holds one motion", "leave out the .bvh");
   return Done{};
 }
 
-/// The length that nobody asked for was too short.
+/// The default duration was too short.
 void warn_of_unrest(const BakeSettings& settings, const BakedClip& baked, Diagnostics& diagnostics) {
   const bool hit = baked.prepared.scene.kind != SceneKind::none;
   if (settings.simulation.duration_s || !settings.until_rest || !hit || baked.figures.rest_time_s ||
@@ -272,13 +272,13 @@ void warn_of_unrest(const BakeSettings& settings, const BakedClip& baked, Diagno
                       simulated_s(settings)));
 }
 
-/// Who was to go on with his clip came to stand.
+/// The body was to go on with the start clip, but came to stand.
 void warn_of_stopping(const BakedClip& baked, Diagnostics& diagnostics) {
   if (!baked.prepared.behaviour.goes_on || baked.behaviour.goes_on || baked.behaviour.fall_begins_s) return;
   diagnostics.warn(
-      "", fmt::format("he cannot go on with the clip from here: he comes to stand{}; a weaker --strength, "
-                      "another --at or another clip may let him",
-                      baked.returns_s > 0.0 ? ", and is blended into it" : ""));
+      "", fmt::format("the body cannot go on with the start clip from here and comes to stand{}; a weaker "
+                      "--strength, another --at or another clip may help",
+                      baked.returns_s > 0.0 ? ", then is blended into the clip" : ""));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ struct BakedClip {
   double ground_lift_max_m = 0.0;  // how far frames were raised so that the skin stays above the floor
   ResampleError resample_error;
   int trials = 1;      // of the search that found it
-  double score = 0.0;  // how much like a person's the answer is, see score.h
+  double score = 0.0;  // how like a person the body moves, see score.h
   BakeTimings timings_s;
 };
 

@@ -1,4 +1,4 @@
-// When things happen in a clip, as a file of its own beside the clip.
+// The times of a clip's events, as a file of its own beside the clip.
 #pragma once
 
 #include <string>

@@ -133,7 +133,14 @@ void add_use(const BakeSettings& settings, const BakedClip& outcome, Json& row) 
   row["Verdict"] = "";
 }
 
-/// The rows as objects, each Name once.
+/// ASCII letters in lower case.
+std::string lower(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return text;
+}
+
+/// The rows as objects, each Name once; letter case does not count, as in the row names of Unreal.
 std::vector<Json> rows_of(const std::vector<LibraryEntry>& entries) {
   std::vector<Json> rows;
   std::set<std::string> taken;
@@ -141,7 +148,7 @@ std::vector<Json> rows_of(const std::vector<LibraryEntry>& entries) {
     Json row = Json::parse(entry.row);
     const std::string name = row["Name"];
     std::string unique = name;
-    for (int i = 2; !taken.insert(unique).second; ++i) unique = name + '_' + std::to_string(i);
+    for (int i = 2; !taken.insert(lower(unique)).second; ++i) unique = name + '_' + std::to_string(i);
     row["Name"] = unique;
     row["Verdict"] = entry.verdict;
     rows.push_back(std::move(row));
@@ -151,10 +158,15 @@ std::vector<Json> rows_of(const std::vector<LibraryEntry>& entries) {
 
 }  // namespace
 
+std::string library_name(const std::string& character, const std::string& reaction) {
+  const std::string prefix = character + '_';
+  return reaction.starts_with(prefix) ? reaction : prefix + reaction;
+}
+
 std::string library_row(const std::string& character, const BakeSettings& settings, const BakedFile& baked) {
   const BakedClip& outcome = baked.outcome;
   Json row;
-  row["Name"] = character + '_' + outcome.prepared.reaction;
+  row["Name"] = library_name(character, outcome.prepared.reaction);
   row["Character"] = character;
   row["Reaction"] = outcome.prepared.reaction;
   row["Clip"] = outcome.timeline.clip.name;

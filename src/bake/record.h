@@ -64,7 +64,7 @@ struct ReactionRecord {
   std::vector<std::string> warnings;
   std::string error, fix;     // why it failed
   bool cannot_write = false;  // the fault of the disk, not of the reaction
-  double seconds = 0.0;       // that it took
+  double seconds = 0.0;       // that the bake took
 
   bool done() const { return figures.has_value(); }
 };

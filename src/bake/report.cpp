@@ -89,7 +89,7 @@ Json humanoid_json(const Character& character, const BakedClip& outcome) {
   return json;
 }
 
-/// Distance of the joints of the clip's impact frame from the pose it starts from.
+/// How far the joints of the clip's impact frame are from the start pose.
 double position_jump(const Character& character, const BakedClip& outcome) {
   const auto impact =
       static_cast<std::size_t>(std::lround(outcome.timeline.impact_s * outcome.timeline.clip.fps));

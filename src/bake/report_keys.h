@@ -1,5 +1,5 @@
-// Where a report holds what others show of it: one table for all who read reports. tests/bake holds it
-// against reports that were written.
+// The keys under which a report holds the values that other pages show: one table for everything that
+// reads reports. tests/bake compares it with written reports.
 #pragma once
 
 namespace ukemi {

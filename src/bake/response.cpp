@@ -16,7 +16,7 @@ namespace ukemi {
 namespace {
 
 constexpr double kStandingShare = 0.75;  // of the pelvis's height at the start
-constexpr double kOffFloor_m = 0.004;    // a sole whose lowest corner is higher stands no more
+constexpr double kOffFloor_m = 0.004;    // a sole whose lowest corner is higher is off the floor
 constexpr double kFlat_m = 0.010;        // between the highest and the lowest corner of a level sole
 constexpr double kSettling_s = 0.05;     // of a plant
 

@@ -15,7 +15,7 @@ enum class Outcome { stood, stepped, fell };
 std::string_view name(Behaviour behaviour);
 std::string_view name(Outcome outcome);
 
-/// What came down on the floor when, seconds after the blow. The knee: of a living body that fell.
+/// Times of the first contacts with the floor, seconds after the blow. Knee: only of a living body that fell.
 struct FirstContacts {
   std::optional<TouchDown> first;  // of all but the feet
   std::optional<TouchDown> hand, knee, pelvis, head;
@@ -39,8 +39,8 @@ struct Response {
 /// What the last frame of a motion that began upright shows.
 EndPose final_pose_of(const BodyPose& start, const BodyPose& end);
 
-/// Largest way of the least moved corner of a sole while it stands on the floor for more than 50 ms, from 50
-/// ms after it touched, up to `until_s`, m. A foot stands with a corner within 4 mm of the floor, but not
+/// How far a standing sole slides at most, m: the way of its least moved corner from 50 ms after it touched,
+/// up to `until_s`. A foot stands with a corner within 4 mm of the floor for more than 50 ms, but not
 /// 1. between lift and contact of one of `steps` (times of the trajectory);
 /// 2. where it touches with an edge that goes faster than kPlantedSpeed_m_s (judge/events.h): a swing passes
 ///    close to the floor. A flat sole that is dragged stands at any speed.

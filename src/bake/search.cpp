@@ -16,9 +16,9 @@ namespace ukemi {
 namespace {
 
 constexpr int kTrials = 5;
-constexpr double kGoodFall = 0.9;  // score from which no better fall is looked for
+constexpr double kGoodFall = 0.9;  // score above which the search for a better fall ends
 
-/// First foot and step time are what matters most for who is to stand.
+/// For a body that is to stay up, the first foot and the step time matter most.
 std::vector<Choice> ways_to_stand(bool planted) {
   std::vector<Choice> ways(5);
   if (planted) {
@@ -32,7 +32,7 @@ std::vector<Choice> ways_to_stand(bool planted) {
   return ways;
 }
 
-/// Who is to fall gives in, sooner or later, the more easily the weaker he is.
+/// A body that is to fall gives in sooner or later; a weaker one more easily.
 std::vector<Choice> ways_to_fall() {
   std::vector<Choice> ways(5);
   ways[1].gives_in_s = 0.30;
@@ -67,7 +67,7 @@ class Search {
   Result<std::optional<TriedTake>> best_of(const std::vector<Choice>& choices);
   /// The least force from outside that reaches the outcome.
   Result<std::optional<TriedTake>> helped();
-  /// A trial whatever becomes of it.
+  /// A trial with any outcome.
   Result<TriedTake> followed(const Choice& choice);
   int trials() const { return trials_; }
   bool interrupted() const { return interrupted_; }
@@ -191,7 +191,7 @@ void warn_of_the_outcome(const BakeSettings& settings, int trials, Diagnostics& 
   const std::string_view way_on = settings.assist
                                       ? "help from outside was tried too: give another --strength"
                                       : "--search N tries more, --assist lets a force from outside help";
-  diagnostics.warn("", fmt::format("{}: this is what the body does of itself; {}", none, way_on));
+  diagnostics.warn("", fmt::format("{}: the clip shows what the body does without help; {}", none, way_on));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct SearchRun {
 /// Trials that the settings allow.
 int most_trials(const BakeSettings& settings);
 
-/// What is tried, in this order: first what the body does of itself.
+/// What is tried, in this order: first what the body does without help.
 std::vector<Choice> choices_for(const BakeSettings& settings);
 
 /// 1. Without an outcome: the trial with the best score.

@@ -30,7 +30,7 @@ Result<std::vector<std::uint8_t>> bake_preview(const Character& character, const
 struct RenderSettings {
   std::optional<std::string> clip;  // default: the last of the file; the rest pose of a file without clips
   HumanoidOptions humanoid;
-  std::string region = "human";  // whose ranges are drawn
+  std::string region = "human";  // its ranges are drawn
   Overlays overlays;
   ThemeKind theme = ThemeKind::light;
   std::optional<ViewAngles> view;

@@ -20,7 +20,7 @@
 namespace ukemi {
 namespace {
 
-constexpr double kGoesOn_s = 0.4;                 // of the blend into the start clip of who goes on with it
+constexpr double kGoesOn_s = 0.4;                 // of the blend into a start clip that the body goes on with
 constexpr double kMostTransforms = 16'777'216.0;  // of a clip: 9 GB while its keys are reduced
 
 void keep_frames(std::size_t frames, Trajectory& trajectory) {
@@ -127,7 +127,7 @@ void end_where_it_goes_on(const std::optional<GoesOn>& goes_on, Trajectory& traj
   if (goes_on) keep_frames(static_cast<std::size_t>(goes_on->time_s * trajectory.fps + 1e-9) + 1, trajectory);
 }
 
-/// Where the clip leads in the end: who goes on is at the moment of the clip that he has come to.
+/// How the clip ends: a body that goes on is at the moment of the start clip that it has reached.
 Return return_of(const BakeSettings& settings, const ControllerReport& behaviour) {
   Return to{settings.recover_to, std::nullopt};
   if (behaviour.goes_on) to.moment_s = behaviour.goes_on->moment_s;
@@ -181,7 +181,7 @@ Result<SimulationResult> simulate_take(const BakeSettings& settings, const Prepa
   };
   auto result = run(behaviour);
   if (behaviour.goes_on && result && result->behaviour.fall_begins_s) {
-    // Who falls as he goes on may come to stand.
+    // A body that falls while it goes on may come to stand instead.
     const Diagnostics falling = said;
     BehaviourSettings stops = behaviour;
     stops.goes_on.reset();

@@ -12,8 +12,8 @@ namespace ukemi {
 Result<SimulationResult> simulate_take(const BakeSettings& settings, const Prepared& prepared,
                                        const BehaviourSettings& behaviour, Diagnostics& diagnostics);
 
-/// The simulation, its still tail trimmed, as a clip with all that stands before and behind it, its figures
-/// and its score. Errors: usage (too many frames), those of the recovery.
+/// The simulation, its still tail trimmed, as a clip with lead and recovery, its figures and its
+/// score. Errors: usage (too many frames), those of the recovery.
 Result<BakedClip> clip_of_take(const Character& character, const BakeSettings& settings,
                                const Prepared& prepared, SimulationResult simulation);
 

@@ -30,7 +30,7 @@ struct Animation {
   double end_s = 0.0;    // last key
   double fps = 0.0;      // native rate where the file has one (BVH), else 0
   std::vector<Track> tracks;
-  std::string extras_json{};  // what the file says of it beyond glTF; empty: nothing
+  std::string extras_json{};  // the animation's extras in the file; empty: none
 
   double duration_s() const { return end_s - start_s; }
 };

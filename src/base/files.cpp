@@ -39,7 +39,7 @@ fs::path with_new_name(const fs::path& folder, const Make& make) {
   return {};
 }
 
-/// Gives a file without a name one.
+/// Gives a name to a file that has none.
 bool link_as(int fd, const char* path) {
   const std::string self = "/proc/self/fd/" + std::to_string(fd);
   return linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path, AT_SYMLINK_FOLLOW) == 0;

@@ -1,4 +1,4 @@
-// FNV-1a, 64 bits: a hash for what nobody tampers with. Where content must be told apart for certain:
+// FNV-1a, 64 bits: a hash for data that is not hostile. Where content must be told apart for certain:
 // base/digest.h.
 #pragma once
 

@@ -7,7 +7,7 @@
 namespace ukemi {
 
 /// Frames per second of an animation: the file's, or that of its closest keys (a reduced clip leaves keys
-/// out), but for one in 500: some exporters add keys between frames.
+/// out), except for one in 500: some exporters add keys between frames.
 double native_rate(const Animation& animation);
 
 }  // namespace ukemi

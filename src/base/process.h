@@ -33,7 +33,7 @@ struct Pipe {
   Descriptor read, write;
 };
 
-/// Closed in programs that this one executes; nothing where there can be none (errno says why).
+/// A pipe that programs started by this one do not inherit; nothing where none can be made (see errno).
 std::optional<Pipe> make_pipe();
 
 /// Appends what can be read at once; false at the end of the stream. Bytes: std::string or a vector of them.
@@ -47,10 +47,10 @@ int wait_for_end(pid_t child);
 bool die_with(pid_t parent);
 /// In a child: no core files.
 void leave_no_core();
-/// In a child: so many bytes of addresses at most. Without effect under a sanitizer, whose shadow takes
-/// terabytes.
+/// In a child: limits its address space to this many bytes. Without effect under a sanitizer, whose shadow
+/// takes terabytes.
 void limit_addresses(std::size_t bytes);
-/// In a child: files may not grow beyond so many bytes.
+/// In a child: files may not grow beyond this many bytes.
 void limit_file_size(std::size_t bytes);
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -46,7 +46,7 @@ struct Skeleton {
 
 /// A name as a BVH can hold it: blanks, braces and control characters are '_' (as three.js reads glTF names).
 std::string plain_name(std::string name);
-/// Nodes by plain name, of those that `counts` (all where it is empty); -1 for a name that several have.
+/// Node of each plain name, -1 where several share it. Only nodes whose `counts` is true (empty: all).
 std::map<std::string, int> nodes_by_plain_name(const Skeleton& skeleton,
                                                const std::vector<char>& counts = {});
 

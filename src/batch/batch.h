@@ -22,15 +22,15 @@ Result<double> estimate_seconds(const BatchPlan& plan, const BatchSettings& sett
 
 struct BatchProgress {
   std::size_t finished = 0, failed = 0, total = 0;
-  const ReactionRecord* last = nullptr;  // that has just ended
+  const ReactionRecord* last = nullptr;  // the one that has just ended
 };
 
 struct BatchResult {
   std::vector<ManifestEntry> entries;  // those that are done, failed or rejected
   std::size_t baked = 0;               // in this run
   std::size_t kept = 0;                // from earlier ones
-  bool stopped = false;                // before its end
-  std::optional<Error> cannot_write;   // why it was
+  bool stopped = false;                // before all was baked
+  std::optional<Error> cannot_write;   // why writing failed
 };
 
 /// Bakes what the plan says and writes manifest.json and manifest.csv (of a shard: manifest.I-of-N.json and

@@ -18,7 +18,7 @@ struct ManifestEntry {
   ReactionStatus status = ReactionStatus::failed;
   std::string digest;
   std::optional<ReactionRecord> record;  // of what was baked
-  std::string error;                     // why it failed or was rejected
+  std::string error;                     // why the reaction failed or was rejected
 };
 
 struct Manifest {

@@ -1,4 +1,4 @@
-// What a batch is told, and what it is going to do.
+// The settings of a batch, and what it is going to do.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ struct BatchSettings {
   bool reject_unsettled = false;             // reject what does not come to rest
   WorkerSettings workers;
   AfterBake after;                  // see batch_work
-  std::string program{build_id()};  // that bakes: what another one baked is not kept
+  std::string program{build_id()};  // the program that bakes; clips of another one are not kept
 };
 
 enum class Plan { bake, keep, left_out, elsewhere };  // elsewhere: another shard's

@@ -84,7 +84,7 @@ std::string named(const std::string& pattern, const std::map<std::string, std::s
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
-/// The same for every character, so that a variation of one is that of the others.
+/// The same for every character, so that variation 2 (say) is the same blow for all of them.
 Random random_of(const Reaction& reaction) {
   const std::string digest = digest_of(fmt::format("{}\n{}", reaction.name, reaction.seed));
   return Random(std::stoull(digest.substr(0, 16), nullptr, 16));

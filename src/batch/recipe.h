@@ -28,7 +28,7 @@ struct RecipeValue {
 };
 using RecipeSettings = std::map<std::string, RecipeValue>;  // by the setting's name
 
-/// How far variations of a reaction differ from what is written: each quantity by up to so much either way.
+/// How far variations of a reaction differ from what is written: each quantity by up to this much either way.
 struct Jitter {
   double direction_deg = 0.0;     // azimuth and elevation
   double point_m = 0.0;           // where on the segment: up and sideways

@@ -31,7 +31,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kUnits =
                                                                                    {"TIMES", "1"},
                                                                                    {"0..1", "1"}}};
 
-/// Texts that are nothing but one of their words.
+/// Settings that take only one of a list of words.
 constexpr std::array<std::string_view, 3> kWordsOnly = {"hit", "preset", "scene"};
 
 std::string_view type_of(const Setting& setting) {

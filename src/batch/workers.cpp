@@ -253,7 +253,7 @@ class Pool {
 
 Status run_jobs(const std::vector<std::string>& jobs, const WorkerSettings& settings, const Work& work,
                 const std::function<void(const JobEnd&)>& ended, const std::function<bool()>& stopped) {
-  signal(SIGPIPE, SIG_IGN);  // a worker may go at any moment
+  signal(SIGPIPE, SIG_IGN);  // a worker may die at any moment
   signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a failed write
   return Pool(jobs, settings, work, ended).run(stopped);
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLeastStand_s = 0.6;     // a body at the edge of its feet may be still before it acts
 constexpr double kHandOver_s = 0.05;      // from the loss of balance to the first protecting motion
-constexpr double kLongestSwing_s = 0.45;  // after the loss a foot is in the air at most so long
+constexpr double kLongestSwing_s = 0.45;  // longest time in the air of a foot once balance is lost
 
 bool is_foot(Segment s) { return s == Segment::foot_l || s == Segment::foot_r; }
 

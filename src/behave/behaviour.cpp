@@ -82,7 +82,7 @@ StandSettings stand_settings(const ArticulatedBody& body, const Scene& scene,
   return stand;
 }
 
-/// What it goes on with; null: it comes to stand.
+/// The start clip that the body goes on with; null: it comes to stand.
 std::shared_ptr<const Gait> gait_of(const ArticulatedBody& body, const BodyPose& home,
                                     const BehaviourSettings& behaviour, double gravity) {
   if (!behaviour.goes_on) return nullptr;

@@ -13,18 +13,18 @@ namespace ukemi {
 
 enum class Behaviour {
   alert,  // balances, steps, protects itself
-  dazed,  // the same late and weakly, with one step to catch himself
+  dazed,  // the same, but late and weak, with one step to keep its balance
   limp    // tone alone, which fades
 };
 
-/// What a person might as well have done. The default is what he does of himself.
+/// What a person might as well have done. The default is what the mean person does.
 struct Choice {
   std::optional<BodySide> first_foot;
   double swing = 1.0;                // times the time that a step takes
   double width = 1.0;                // times how wide a step aside may be while going forward
   double tension = 1.0;              // times the drives of the muscles, below their caps
   double ride = 1.0;                 // times how far head and trunk go with the blow
-  std::optional<double> gives_in_s;  // lets himself fall from then on
+  std::optional<double> gives_in_s;  // gives in and falls from then on
   Help help;                         // from outside
 };
 

@@ -10,13 +10,13 @@ namespace ukemi {
 namespace {
 
 constexpr double kFade_s = 0.10;
-constexpr double kMargin = radians(3.0);  // goals stay so far inside the range
-constexpr double kArmReady_m = 0.2;       // the centre of mass so far outside the soles: arms reach fully
+constexpr double kMargin = radians(3.0);  // goals stay this far inside the range
+constexpr double kArmReady_m = 0.2;  // arms reach fully when the centre of mass is this far outside the soles
 constexpr double kArmAtOnce = 0.45;
 constexpr double kReadyBefore_s = 0.45,
-                 kReadyIn_s = 0.2;        // and whatever it is, before the hands are to touch
+                 kReadyIn_s = 0.2;        // and at the latest, before the hands are to touch
 constexpr double kLeastShare = 0.12;      // of full effort that a joint's damper may use
-constexpr double kLooseDamping_s = 0.03;  // damper of what lets go, times the full torque
+constexpr double kLooseDamping_s = 0.03;  // damper of a joint that lets go, times the full torque
 constexpr double kCalm_m_s = 0.14, kCalmTurning = 0.7, kCalmFor_s = 0.15;
 constexpr double kSlow_m_s = 0.5, kSlowFor_s = 0.3;
 constexpr double kLongestArch_s = 2.0;  // after landing a body may hang between knees and chest
@@ -30,15 +30,15 @@ constexpr double kTouching = 1.0, kHardTouching = 0.8;  // share of an arm's eff
 constexpr double kHardSink_m_s = 2.0;                   // sinks faster than this
 constexpr double kStill_s = 0.5;                        // until a settled body's joints hold still
 constexpr double kStillDamping = 20.0;                  // times that of lying
-constexpr double kOnFront = 0.5;   // side_down.x(): who lands so comes to lie on the belly
+constexpr double kOnFront = 0.5;   // side_down.x(): above, the body comes to lie on its belly
 constexpr double kYielding = 0.1;  // share of its effort that an arm keeps where nothing sinks on to it
 constexpr double kHipsThrough = 1.2,
                  kLooseKnees = 0.05;     // efforts while a kneeling body goes on to the belly
 constexpr double kArmsLieDown_s = 0.45;  // on the belly: nobody lies still at once
 constexpr double kArmAtRest = 0.1;       // effort on the back: too weak to hold a hand up in the air
 constexpr double kFlatAfter_s = 0.03, kFlatAtLast_s = 0.4;  // trunk down, or landed: then the legs lie down
-constexpr double kLegsAside = 1.0;  // effort besides of legs that brake a fall to the side
-constexpr double kMoving = 1.2;     // effort besides, amid the way to where a part will lie
+constexpr double kLegsAside = 1.0;  // added effort of legs that brake a fall to the side
+constexpr double kMoving = 1.2;     // added effort midway to where a part will lie
 
 bool is_hip(Joint j) { return j == Joint::hip_l || j == Joint::hip_r; }
 bool is_arm(Joint j) { return j >= Joint::clavicle_l && j <= Joint::wrist_r; }
@@ -163,8 +163,8 @@ void Falling::feel(const Senses& senses) {
 
 namespace {
 
-/// The pose that the body is coming to: nobody stays on hands and knees for long, and who sits but goes on
-/// falling will lie.
+/// The pose that the body is coming to: a person does not stay on hands and knees for long, and a seated body
+/// that goes on falling will lie.
 EndPose coming_pose(const Senses& senses, EndPose now, double tau) {
   if (now == EndPose::kneeling) return EndPose::prone;
   if (now != EndPose::seated) return now;
@@ -177,7 +177,7 @@ EndPose coming_pose(const Senses& senses, EndPose now, double tau) {
 
 }  // namespace
 
-/// The pose that the body comes to, once that has lasted; who lies does not sit up again.
+/// Sets the pose that the body comes to, once that has lasted; a lying body does not sit up again.
 void Falling::choose_pose(const Senses& senses, double h) {
   // Knees first, or the front: on to the belly.
   const bool forward = landing_.kneels_s() || (landing_.landed_s() && way().side_down.x() > kOnFront);
@@ -299,7 +299,7 @@ void Falling::aim_arms(const Senses& senses, PerJoint<Quat>& goals) const {
   }
 }
 
-/// What each joint is turned to: of falling, or of lying once its part settles.
+/// What each joint is turned to: as falling asks, or as lying asks once its part settles.
 PerJoint<Quat> Falling::goals_of(const Senses& senses) const {
   PerJoint<Quat> falling = held_;
   crouch(way(), variation_, body_.lambda, dive(body_, senses, way()), falling);

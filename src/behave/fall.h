@@ -30,14 +30,14 @@ class Falling : public Controller {
   Falling(const FallSettings& settings, const ArticulatedBody& body, const RangeOfMotion& range,
           const MuscleStrength& strength);
 
-  /// Keeps the way of the fall up to date while another behaviour stands.
+  /// Keeps the direction of the fall up to date while the body still stands.
   void watch(const Senses& senses, double h);
   /// The fall begins. From `fade_from_s` of a joint on (infinite: not yet), its goals fade in over 0.1 s;
   /// their springs start from the rotation that the joint has then.
   void begin(const Senses& senses, const PerJoint<double>& fade_from_s);
-  /// A joint whose time was not known in begin().
+  /// Fades in a joint whose time was not known in begin().
   void fade_in(Joint joint, double from_s);
-  /// Share of a joint's goals that is in force, 0 to 1: what drove the joint before is to keep the rest.
+  /// Share of a joint's goals that is in force, 0 to 1; what drove the joint before keeps the rest.
   double faded(Joint joint, double time_s) const;
   bool begun() const { return report_.begins_s.has_value(); }
   bool landed() const { return report_.landed_s.has_value(); }

@@ -7,7 +7,7 @@ namespace ukemi {
 namespace {
 
 constexpr double kLeastAhead =
-    0.3;  // of what an arm reaches: a hand that is far from the ground goes so far ahead
+    0.3;  // of an arm's reach: how far ahead a hand goes that is far from the ground
 constexpr double kShortest = 0.35;  // of the arm's length: wrist from the shoulder
 constexpr double kMostPronation = radians(82.0);
 constexpr double kBentArm = 0.8;  // of the arm's length: how high the shoulder is when the hand touches
@@ -15,7 +15,7 @@ constexpr double kFreeFall = 0.7 * 9.81;  // m/s^2: a body that falls over falls
 constexpr double kLookAhead_s = 0.5;
 constexpr double kWristHeight_m = 0.05;
 constexpr double kHandsStayUpFrom_m = 0.55, kHandsStayUp = 0.45;  // by shoulder height
-constexpr double kFarHand_m = 0.25;  // sideways: the far hand lands so far in front of the near shoulder
+constexpr double kFarHand_m = 0.25;  // sideways: how far in front of the near shoulder the far hand lands
 
 Vec3 flat(const Vec3& v) { return {v.x(), 0.0, v.z()}; }
 
@@ -105,7 +105,7 @@ Quat from_axes(const Vec3& y, const Vec3& z) {
   return Quat(axes).normalized();
 }
 
-/// A place that is out of reach is drawn in over the ground: the hand comes down to it all the same.
+/// A place that is out of reach is drawn in over the ground, so that the hand still comes down to it.
 Vec3 within_reach(const Vec3& shoulder, const Vec3& wrist, double reach_m) {
   const Vec3 to = wrist - shoulder;
   const double away = flat(to).norm();

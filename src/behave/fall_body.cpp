@@ -5,7 +5,7 @@
 namespace ukemi {
 namespace {
 
-constexpr double kLeg_m = 0.857;                // of the man whose lengths and times the constants are
+constexpr double kLeg_m = 0.857;                // leg of the man that the constants are given for
 constexpr double kFullEffortAt = 0.35;          // rad: error at which a joint gives all that it is asked for
 constexpr double kStandardSize = 73.0 * 1.741;  // kg m
 

@@ -12,7 +12,7 @@ namespace {
 constexpr double kSpineShare = 0.54;     // of the trunk's bend; the chest has the rest
 constexpr double kSpineTurnShare = 0.3;  // of its turn
 constexpr double kFullBendBeyond_m =
-    0.25;  // the centre of mass so far outside the soles: the legs bend fully
+    0.25;  // the legs bend fully when the centre of mass is this far outside the soles
 constexpr double kLeastBend = 0.3;
 
 /// A value for each way of falling, mixed by the weights; degrees in, radians out.
@@ -35,7 +35,7 @@ constexpr double kAbduction = radians(5.0);
 // A dive: the trunk is level (degrees from upright) while the knees are up: then nothing but the belly comes
 // down.
 constexpr double kDivesFrom = 50.0, kDivesIn = 30.0;
-constexpr double kKneeling_m = 0.15, kKneesUp_m = 0.2;  // knees so high kneel; so much higher do not
+constexpr double kKneeling_m = 0.15, kKneesUp_m = 0.2;  // knees this low kneel, this much higher do not
 constexpr double kDivingKnees = 0.75;                   // share of their bend that goes
 constexpr double kSidewaysLegs = 0.25;                  // the lower leg bends more by this share
 

@@ -56,7 +56,7 @@ ControllerReport KnockedOut::report() const {
   ControllerReport report = alive_->report();
   if (!out_s_) return report;
   report.knocked_out_s = out_s_;
-  // What he would have done from then on he has not.
+  // What the living body did later than this does not count.
   std::erase_if(report.steps, [&](const StepTaken& step) { return step.lift_s >= *out_s_; });
   report.fall_begins_s = std::min(report.fall_begins_s.value_or(*out_s_), *out_s_);
   report.fall.settled_s.reset();

@@ -1,4 +1,4 @@
-// Whose lights go out: alive until then, limp from then on.
+// A body that is knocked out: alive until then, limp from then on.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// Tone: who is hit stiffens first and then gives way. What a limp or dazed body has.
+// Tone: a limp or dazed body that is hit stiffens first, then gives way.
 #pragma once
 
 #include <optional>

@@ -18,7 +18,7 @@ struct WeightOffset {
   double mass_m = 0.0;     // of the centre of mass
   double capture_m = 0.0;  // of where its motion takes it: c + v sqrt(h / g) (Hof 2008, eq. 5)
 
-  /// Momentum may carry in what does not lie over its support yet.
+  /// The smaller of the two: momentum may carry over its support a body that is not there yet.
   double least_m() const { return std::min(mass_m, capture_m); }
 };
 

@@ -65,7 +65,7 @@ std::vector<int> joints_below(const Tree& tree, int node) {
   return path;
 }
 
-/// Two bones are the more of a limb the longer and the more alike they are.
+/// How like a limb two bones are: the more, the longer they are and the closer in length.
 double limb_score(double upper, double lower) {
   return std::min(upper, lower) - 0.5 * std::abs(upper - lower);
 }

@@ -54,8 +54,8 @@ std::vector<char> moved_nodes(const Skeleton& skeleton, const Animation& animati
   return below;
 }
 
-/// Nodes by name, meshes apart: bones may share their names, and of two figures with the same names those of
-/// the one that moves have them. What has no name of its own goes by its number.
+/// Nodes by name, without meshes. Where two figures share bone names, a name means the bone of the one that
+/// moves; a node without a name of its own goes by its number.
 std::map<std::string, int> joints_by_name(const Character& character, const Animation& animation) {
   const Skeleton& skeleton = character.skeleton;
   std::vector<char> is_bone(skeleton.nodes.size(), 1);
@@ -231,7 +231,7 @@ double largest(const Difference& difference, Member member) {
   return value;
 }
 
-/// The first word of the answer: what does not agree.
+/// The first word of the answer: what differs.
 std::string_view verdict_of(const Difference& difference, const DifferenceSettings& settings) {
   if (difference.within_tolerance) return "same";
   const bool moves_alike = largest(difference, &JointDifference::position_mm) <= settings.tolerance_mm &&

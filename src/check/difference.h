@@ -32,7 +32,7 @@ struct Difference {
   long samples = 0;                     // times compared
   std::vector<JointDifference> joints;  // worst first: by the larger share of a tolerance
   std::vector<std::string> only_in_a, only_in_b;
-  bool same_axes = true;      // the rest poses agree, and with them the axes that local rotations are told in
+  bool same_axes = true;      // the rest poses agree, and so do the axes of local rotations
   bool same_duration = true;  // to half a sample
   bool within_tolerance = true;
 };

@@ -14,12 +14,12 @@ struct JudgeClipSettings {
   std::string file;  // FILE, or FILE#CLIP with the clip's name or index; its last clip unless told
   HumanoidOptions humanoid;
   std::optional<double> mass_kg;  // default: that of a man of the figure's height
-  JudgeSettings judge;            // an impact that is not told is the one that a bake wrote into the clip
+  JudgeSettings judge;            // default impact: the one that a bake wrote into the clip
 };
 
 struct JudgedClip {
   std::string file, clip;
-  double fps = 0.0;  // that it was judged at: the clip's, at least 60, at most 120
+  double fps = 0.0;  // rate of the judgement: the clip's, at least 60, at most 120
   double duration_s = 0.0;
   double height_m = 0.0, mass_kg = 0.0;
   Judgement judgement;

@@ -73,7 +73,7 @@ Result<Character> load_to_check(const RomSettings& settings, std::optional<std::
   return load_character(*path, LoadOptions{}, diagnostics);
 }
 
-/// Leaves the range that the clip was judged by.
+/// Checks the clip; `range` becomes the range that it was judged by.
 Result<RomCheck> check_clip(const RomSettings& settings, RangeOfMotion& range, Diagnostics& diagnostics) {
   std::optional<std::string> wanted = settings.clip;
   const auto character = load_to_check(settings, wanted, diagnostics);

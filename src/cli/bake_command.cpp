@@ -42,7 +42,8 @@ void declare_out(Options& options, BakeRequest& request) {
       "--theme", "light|dark", [&](const std::string& text) { return take_theme(text, settings.theme); },
       "colours of the pictures [default light]");
   options.path("--report", settings.report, "what the bake did, as JSON");
-  options.path("--events", settings.events, "when what happens in the clip, as JSON: hit.events.json");
+  options.path("--events", settings.events,
+               "times of blow, steps, contacts and rest, as JSON: hit.events.json");
   options.flag("--json", request.json, "the report as JSON to stdout");
   options.flag("--quiet", request.quiet, "nothing to stdout, no warnings");
 }

@@ -234,7 +234,8 @@ Status make_page(const BatchRequest& request, const BatchResult& result) {
   return review ? Status(Done{}) : Status(review.error());
 }
 
-/// What the page needs of each reaction is made where it was baked. A failure is told when the page is made.
+/// What the page needs of each reaction is made where it was baked. A failure is reported when the page is
+/// made.
 AfterBake parts_for_page(const BatchRequest& request) {
   const BatchSettings& settings = request.settings;
   if (!request.review || !settings.shard.whole() || !settings.merge.empty()) return {};

@@ -63,7 +63,7 @@ void BatchProgressView::show(const BatchProgress& progress) {
   tick();
 }
 
-/// A failure is told on a terminal too.
+/// A failure is printed on a terminal too.
 void BatchProgressView::say(const ReactionRecord& record, const BatchProgress& progress) {
   if (style_ == Style::bar && record.done()) return;
   std::string line =

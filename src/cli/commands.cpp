@@ -34,7 +34,7 @@ constexpr std::array<Command, 12> kCommands = {{
     {"diff", "A B", "compares two clips joint by joint", diff_command},
     {"rom", "", "range of motion of the joints, and a clip's path through it, as picture or text",
      rom_command},
-    {"calibrate", "FILE...", "thresholds of the active restriction from people who stand and walk",
+    {"calibrate", "FILE...", "thresholds of the active restriction from clips of people who stand and walk",
      calibrate_command},
     {"help", "TOPIC", "a page to read, or a command's options", help_command},
 }};

@@ -77,16 +77,16 @@ Status check(const CompareRequest& request) {
   if (request.json && request.quiet)
     return usage_error("--json and --quiet exclude each other", "give one of them");
   if (request.quiet && request.folder.empty())
-    return usage_error("nothing to write", "add -o DIR, or leave --quiet away");
+    return usage_error("nothing to write", "add -o DIR, or leave out --quiet");
   if (request.show > request.settings.hits)
     return usage_error(fmt::format("--show {} is beyond the last hit", request.show),
                        fmt::format("give a number from 1 to {}, or more --hits", request.settings.hits));
   if (request.show > 0 && request.folder.empty())
-    return usage_error("--show needs a folder for its picture", "add -o DIR, or leave --show away");
+    return usage_error("--show needs a folder for its picture", "add -o DIR, or leave out --show");
   return request.folder.empty() ? Status(Done{}) : check_folder(request.folder);
 }
 
-/// A comparison and what is to be written of it.
+/// A comparison and the files that it writes.
 struct Compared {
   Comparison comparison;
   std::vector<NamedPicture> pictures;

@@ -48,7 +48,7 @@ void declare(Options& options, JudgeClipSettings& settings) {
   options.custom(
       "--hit", "SEGMENT", [&judge](const std::string& word) { return take_segment(word, judge); },
       "segment that the blow hit [default: unknown]");
-  options.flag("--ko", judge.knock_out, "a knock-out: nobody protects himself");
+  options.flag("--ko", judge.knock_out, "a knock-out: the body does not protect itself");
   options.group("the body");
   options.number("--mass", "KG", settings.mass_kg, Range{1.0, 1000.0},
                  "mass of the body [default: that of a man of the figure's height]");
@@ -61,8 +61,9 @@ int judge_command(const Arguments& arguments) {
   bool json = false;
   Options options(
       "judge",
-      "says which criteria of human motion a clip meets: of who stays up, falls or gets up, found "
-      "from where the joints are.\nThe score is the share of the criteria that apply");
+      "says which criteria of human motion a clip meets. There are criteria for a body that stays up, falls "
+      "or gets up; the joints' places tell which it does.\nThe score is the share of the criteria that "
+      "apply");
   options.argument("CLIP", settings.file, "a file with motion, or FILE#CLIP [default clip: the last]");
   declare(options, settings);
   declare_humanoid_options(options, settings.humanoid);

@@ -5,7 +5,7 @@
 
 namespace ukemi {
 
-/// A line on stderr that is written over, and taken away at the end; nothing where nobody looks on.
+/// A line on stderr that is written over, and taken away at the end; nothing where stderr is no terminal.
 class ProgressLine {
  public:
   /// `what` is counted: "run".

@@ -51,7 +51,8 @@ void declare_look(Options& options, RenderSettings& settings) {
   options.flag("--axes", settings.overlays.axes, "each joint's axes: forward red, up green, right blue");
   options.flag("--rom", settings.overlays.ranges,
                "each joint's range of motion as a cone: amber near its edge, red outside");
-  options.text("--region", "NAME|FILE", settings.region, "whose ranges: human, diamond, box or a TOML file");
+  options.text("--region", "NAME|FILE", settings.region,
+               "range of motion of --rom: human, diamond, box or a TOML file");
   options.flag("--trail", settings.overlays.trail, "draws the path of the hips");
 }
 
@@ -65,7 +66,7 @@ void declare_kinds(Options& options, RenderSettings& settings) {
   options.number("--speed", "X", settings.speed, Range{0.01, 10.0},
                  "speed of the picture: 0.25 is four times as slow as the clip");
   options.number("--turntable", "S", settings.turn_s, Range{0.5, 60.0},
-                 "the camera goes once round in so many seconds");
+                 "the camera goes once round in this many seconds");
 }
 
 Status check(const RenderRequest& request) {

@@ -7,7 +7,7 @@
 namespace ukemi {
 namespace {
 
-/// What the help says of the value when none is given, and of what is legal.
+/// The help line of a setting, with its default and its legal values.
 template <typename Target>
 std::string help_of(const SettingOf<Target>& setting, const Target& target) {
   const std::vector<std::string> values = setting.get(target);

@@ -37,7 +37,7 @@ SegmentFrames moved_frames(const Skeleton& skeleton, const SegmentFrames& frames
                            const Quat& second_from_first, const std::vector<int>& nodes,
                            const Skeleton& second, const Pose& second_pose);
 
-/// What is said of a baked animation beside its frames and marks.
+/// What the extras of a baked animation hold beside its frames and marks.
 struct ClipFacts {
   std::string root_motion = "hips";
   std::optional<Pose> additive_from;                 // an additive clip: the pose it is the difference from
@@ -61,7 +61,7 @@ std::optional<SegmentFrames> frames_in_extras(const Skeleton& skeleton, std::str
 /// The range that the bake of an animation was judged by: `human` with the joints that its extras change.
 RangeOfMotion range_in_extras(RangeOfMotion human, std::string_view extras_json);
 
-/// The marks in an animation's extras; none where there are none or they are not as they are written.
+/// The marks in an animation's extras; empty where there are none or they are malformed.
 std::vector<Mark> marks_in_extras(std::string_view extras_json);
 
 }  // namespace ukemi

@@ -13,13 +13,13 @@
 namespace ukemi {
 namespace {
 
-constexpr double kUpright = 0.7;    // of the pelvis's height: who is lower does not stand
+constexpr double kUpright = 0.7;    // of the pelvis's height: a lower body does not stand
 constexpr double kCarryOn_s = 0.3;  // in which the velocities at the end of the simulation fade
 constexpr double kFloorSmoothing_s = 0.06;
 
 using SegmentVertices = PerSegment<std::vector<Vec3>>;
 
-/// A prop flies on from its last two poses until it lies.
+/// Poses of a prop that flies on from its last two poses until it lies on the floor.
 std::vector<Rigid> flying_on(const Prop& prop, double gravity, std::size_t frames, double fps) {
   std::vector<Rigid> poses;
   if (prop.poses.size() < 2) return poses;
@@ -163,7 +163,7 @@ Status add_recovery(const Actor& actor, double seconds, const Return& to, double
   const Pose before = clip.frames.size() > 1 ? clip.frames[clip.frames.size() - 2] : last;
   const BodyPose figure = segments_of(skeleton, humanoid, last);
   if (is_down(figure, segments_of(skeleton, humanoid, actor.start.pose), actor.start.floor_m))
-    return usage_error("--recover blends a standing body back, and this one ends on the floor",
+    return usage_error("--return blends a standing body back, but this one ends on the floor",
                        "add --get-up in its place");
   const auto unplaced = [&](double time_s) {
     if (to.where != RecoverTo::clip) return actor.start.pose;

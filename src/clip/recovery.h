@@ -8,7 +8,7 @@
 namespace ukemi {
 
 /// What a clip goes back to: the start pose, or what the start clip plays by then.
-enum class RecoverTo { stance, rest, clip };  // stance: not at all, he stays as he stands
+enum class RecoverTo { stance, rest, clip };  // stance: to nothing, the body stays as it stands
 
 struct Return {
   RecoverTo where = RecoverTo::rest;

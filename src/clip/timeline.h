@@ -15,7 +15,7 @@
 
 namespace ukemi {
 
-/// Whose reaction it is: what every part of a timeline is made with.
+/// The character that reacts, as every part of a timeline needs it.
 struct Actor {
   const Character& character;
   const Humanoid& humanoid;
@@ -23,7 +23,7 @@ struct Actor {
   const ArticulatedBody& body;
 };
 
-/// The frames that the start pose gives the segments.
+/// The segments' frames, as the start pose defines them.
 SegmentFrames frames_of(const Actor& actor);
 
 /// Segments of a pose in the frames of the simulation, above a floor at y = 0.

@@ -66,7 +66,7 @@ Result<std::string> write_gltf(const Character& character, const Humanoid& human
 
 struct BvhOptions {
   double metres_per_unit = 0.01;  // unit of a BVH that does not come from a BVH: centimetres
-  std::string extras_json{};      // what is said of the clip, see animation_extras; nothing where empty
+  std::string extras_json{};      // extras of the clip, see animation_extras; empty: none
 };
 
 /// The node of each joint that write_bvh writes, in the order of the file.

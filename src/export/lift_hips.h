@@ -7,8 +7,8 @@
 
 namespace ukemi {
 
-/// Of a BVH whose hips have no position channels: moves their way onto the nearest joint above that has all
-/// three. Other clips stay as they are. `frames`: poses of the character's skeleton.
+/// Moves the hips' motion onto the nearest joint above that has three position channels, in a BVH whose hips
+/// have none. Other clips stay as they are. `frames`: poses of the character's skeleton.
 void lift_hips(const Character& character, const Humanoid& humanoid, std::vector<Pose>& frames);
 
 }  // namespace ukemi

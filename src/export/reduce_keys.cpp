@@ -1,5 +1,5 @@
 // Key reduction: every curve gets keys within a tolerance of its own; then forward kinematics at every frame
-// makes curves exact where a node is too far off, and takes keys away as long as none is.
+// makes curves exact where a node is too far off, and removes keys while every node stays near enough.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -19,25 +19,25 @@ struct HumanBone {
 };
 
 constexpr HumanBone kBones[] = {{Segment::pelvis, "hips"},
-                              {Segment::abdomen, "spine"},
-                              {Segment::chest, "chest"},
-                              {Segment::head, "head"},
-                              {Segment::clavicle_l, "leftShoulder"},
-                              {Segment::upperarm_l, "leftUpperArm"},
-                              {Segment::forearm_l, "leftLowerArm"},
-                              {Segment::hand_l, "leftHand"},
-                              {Segment::clavicle_r, "rightShoulder"},
-                              {Segment::upperarm_r, "rightUpperArm"},
-                              {Segment::forearm_r, "rightLowerArm"},
-                              {Segment::hand_r, "rightHand"},
-                              {Segment::thigh_l, "leftUpperLeg"},
-                              {Segment::shank_l, "leftLowerLeg"},
-                              {Segment::foot_l, "leftFoot"},
-                              {Segment::thigh_r, "rightUpperLeg"},
-                              {Segment::shank_r, "rightLowerLeg"},
-                              {Segment::foot_r, "rightFoot"}};
+                                {Segment::abdomen, "spine"},
+                                {Segment::chest, "chest"},
+                                {Segment::head, "head"},
+                                {Segment::clavicle_l, "leftShoulder"},
+                                {Segment::upperarm_l, "leftUpperArm"},
+                                {Segment::forearm_l, "leftLowerArm"},
+                                {Segment::hand_l, "leftHand"},
+                                {Segment::clavicle_r, "rightShoulder"},
+                                {Segment::upperarm_r, "rightUpperArm"},
+                                {Segment::forearm_r, "rightLowerArm"},
+                                {Segment::hand_r, "rightHand"},
+                                {Segment::thigh_l, "leftUpperLeg"},
+                                {Segment::shank_l, "leftLowerLeg"},
+                                {Segment::foot_l, "leftFoot"},
+                                {Segment::thigh_r, "rightUpperLeg"},
+                                {Segment::shank_r, "rightLowerLeg"},
+                                {Segment::foot_r, "rightFoot"}};
 
-/// Who faces +z with the left hand to +x, from anatomical axes: x anterior, y up, z right.
+/// VRM axes (facing +z, left hand to +x) from anatomical axes (x anterior, y up, z right).
 Quat vrm_from_anatomical() {
   Mat3 axes;
   axes.col(0) = Vec3::UnitZ();

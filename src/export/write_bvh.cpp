@@ -76,7 +76,7 @@ std::string mark_of(const BvhFile& file) {
   return mark;
 }
 
-/// Puts a joint and all below it. `mark` is said once, at the first End Site.
+/// Writes a joint and all below it; `mark` names the first End Site and is then emptied.
 void put_joint(std::string& out, const BvhFile& file, const std::vector<std::vector<int>>& below, int joint,
                int depth, std::string& mark) {
   const BvhJoint& j = file.joints[joint];

@@ -213,8 +213,8 @@ std::optional<Vec3> toe_place(const Character& character, const Humanoid& humano
 /// Of the length of the legs: how far both toes together must lie before or behind the ankles.
 constexpr double kClearlyForward = 0.1;
 
-/// How far the feet point forwards in a pose, of the length of a leg, both together; by the line of the hips
-/// and the rise of the trunk, wherever the figure lies.
+/// How far both feet together point forwards in a pose, in leg lengths. The line of the hips and the rise of
+/// the trunk say where forwards is, so the figure may lie.
 double toes_forward(const Character& character, const Humanoid& humanoid, const Landmarks& f) {
   const Vec3 rise = (f.shoulders() - f.hips()).normalized();
   const Vec3 anterior = rise.cross(f.link(Segment::thigh_l, Segment::thigh_r)).normalized();
@@ -415,16 +415,17 @@ void choose_sides(const Character& character, const Reference& reference, Humano
   if (!stated)
     swap_sides(humanoid);
   else
-    diagnostics.warn(character.path.string(),
-                     fmt::format("the feet point backwards by the sides that {} say; {} win: --map with left "
-                                 "and right limbs exchanged says otherwise",
-                                 by == "user"  ? "you"
-                                 : by == "vrm" ? "VRM data"
-                                               : "the names",
-                                 by == "user" ? "you" : "they"));
+    diagnostics.warn(
+        character.path.string(),
+        fmt::format("with left and right as {} say, the feet point backwards; {} are believed: to "
+                    "exchange left and right, name the limbs with --map",
+                    by == "user"  ? "you"
+                    : by == "vrm" ? "VRM data"
+                                  : "the names",
+                    by == "user" ? "you" : "they"));
 }
 
-/// Who said a bone's side: for the message where it lies on the other one.
+/// What named a bone's side (you, VRM data, names): for the warning that it lies on the other side.
 std::string_view authority(const std::string& by) {
   if (by == "user") return "you win";
   return by == "vrm" ? "VRM data wins" : "the names win";

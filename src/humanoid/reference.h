@@ -11,7 +11,7 @@ namespace ukemi {
 struct Reference {
   Pose pose;
   Vec3 up;                // file axes
-  bool is_frame = false;  // a moment of a motion, not a pose that somebody chose
+  bool is_frame = false;  // a moment of a motion, not a pose that an artist chose
 };
 
 /// A motion's zero pose or best frame; a character's rest pose, its bind pose where that is cleaner, else the

@@ -212,8 +212,8 @@ BodyPose body_in(const Stance& stance, const BodyPose& from) {
   return figure.to;
 }
 
-/// How much shorter than a man's the heels are behind the ankles, metres. People stand with their weight amid
-/// the foot: short heels go back by as much.
+/// How much shorter than a man's the heels are behind the ankles, metres. People stand with their weight over
+/// the middle of the foot: short heels go back by as much.
 double short_heels(const Character& character, const Humanoid& humanoid, const BodyPose& from) {
   constexpr double kHeel = 0.036;  // of the height, behind the ankle
   const Vec3 forward = heading_of(from[index(Segment::pelvis)].rotation) * Vec3::UnitX();
@@ -341,7 +341,7 @@ std::optional<BodyPose> held_away(Stance stance, const BodyPose& from, double he
   return std::nullopt;
 }
 
-/// Standing with hanging arms, held away from a trunk that they would hang into where that helps.
+/// Standing with hanging arms; they are held away from a trunk that they would hang into, if that helps.
 BodyPose stand(const Character& character, const Humanoid& humanoid, const BodyPose& from,
                const Stance& stance) {
   const SkinSurface trunk(character, humanoid, from, body_in(stance, from), [](Segment s) {

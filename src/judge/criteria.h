@@ -18,19 +18,19 @@ struct Evidence {
   const JudgeSettings& settings;
   Window window;  // from the blow on
 
-  /// Of the blow, as it were on a man of 78 kg and 1.78 m; nothing where it is unknown.
+  /// Momentum of the blow, scaled to a man of 78 kg and 1.78 m; nothing where it is unknown.
   std::optional<double> momentum_n_s() const;
 };
 
-/// 2, 4 to 10; `steps` in the window.
+/// Criteria 2 and 4 to 10; `steps` in the window.
 std::vector<Criterion> standing_criteria(const Evidence& evidence, const std::vector<Step>& steps);
-/// 12, 14 to 18.
+/// Criteria 12 and 14 to 18.
 std::vector<Criterion> fall_criteria(const Evidence& evidence, const FallEvents& fall);
-/// 19.
+/// Criterion 19.
 Criterion get_up_criterion(const BodyCourse& body, const Window& window, const GetUpEvents& get_up);
-/// 11: from the blow to the pelvis's contact or the end.
+/// Criterion 11: from the blow to the pelvis's contact or the end.
 Criterion asymmetry_criterion(const BodyCourse& body, const Window& window);
-/// 20: joint speeds over the window.
+/// Criterion 20: joint speeds over the window.
 Criterion joint_speed_criterion(const JudgedMotion& motion, const Window& window);
 
 /// What a window of the motion shows.
@@ -38,10 +38,10 @@ struct Phase {
   ReactionKind kind;
   Window window;
 };
-/// 21: the highest share of what each phase may have.
+/// Criterion 21: each phase's jerk as a share of what it may be; the highest.
 Criterion jerk_criterion(const BodyCourse& body, const std::vector<Phase>& phases);
 
-/// Judged: passed where every clause holds.
+/// A criterion that applies: passed where every clause holds.
 Criterion judged(int number, std::string_view name, std::vector<Clause> clauses);
 Criterion not_applicable(int number, std::string_view name);
 

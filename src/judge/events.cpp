@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kPelvisDown = 0.20, kHandDown = 0.10, kKneeDown = 0.10, kHeadDown = 0.17;  // m
 constexpr double kPelvisUp = 0.25;  // m: has left the floor
-constexpr double kLying = 0.35;     // m: of the pelvis of who lies at the start
+constexpr double kLying = 0.35;     // m: height of the pelvis of a body that lies at the start
 constexpr double kHeadFallen = 0.35;
 constexpr double kContactFilter_hz = 12.0, kContactFilterShare = 0.4;  // at most this share of the rate
 constexpr double kComFilter_hz = 6.0, kFootFilter_hz = 10.0;
@@ -80,7 +80,7 @@ std::vector<double> liveliest(const BodyCourse& body) {
   return fastest;
 }
 
-/// Frame from which on every value stays below a limit for so many frames; `end` where there is none.
+/// Frame from which on every value stays below a limit for this many frames; `end` where there is none.
 int calm_from(const std::vector<double>& values, int begin, int end, int frames, double limit) {
   int calm = begin;
   for (int f = begin; f < end; ++f) {

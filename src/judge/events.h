@@ -70,10 +70,10 @@ struct GetUpEvents {
   std::optional<double> stands_s{};  // time of `upright`
 };
 
-/// Of who lies still in the window's first frame.
+/// Events of a body that lies still in the window's first frame.
 GetUpEvents get_up_events(const BodyCourse& body, const Window& window);
 
-/// Who has fallen and stands at the end again: his way up, from the frame of rest on.
+/// The way up, from the frame of rest on, of a body that fell and stands again at the end.
 std::optional<GetUpEvents> get_up_after(const BodyCourse& body, const Window& window, const FallEvents& fall);
 
 /// A person who lies at the window's begin gets up; one whose pelvis or head comes down falls.
@@ -89,7 +89,7 @@ bool folded_on_face(const BodyCourse& body, int frame);
 
 /// Time of a frame, seconds.
 inline double time_of(const BodyCourse& body, int frame) { return frame / body.fps; }
-/// So many frames, rounded down.
+/// The frames in this time, rounded down.
 inline int frames_of(const BodyCourse& body, double seconds) {
   return static_cast<int>(seconds * body.fps + 1e-6);
 }

@@ -58,8 +58,8 @@ Criterion tucking(const Evidence& e, const FallEvents& fall) {
   return judged(17, kName, {{"tuck_deg", tuck, {5.0, 180.0}}});
 }
 
-/// A clip that ends before the body rests says nothing about rest, but for a body that is still going long
-/// after the fall.
+/// A clip that ends before the body rests says nothing about rest, unless the body still moves long after
+/// the fall.
 Criterion resting(const Evidence& e, const FallEvents& fall) {
   constexpr std::string_view kName = "comes to rest";
   const double folded = folded_on_face(e.body, e.window.end - 1) ? 1.0 : 0.0;

@@ -9,7 +9,7 @@ namespace ukemi {
 struct JerkPeak {
   double deg_s3 = 0.0;
   int node = -1;
-  double time_s = 0.0;  // amid the four frames it is taken from
+  double time_s = 0.0;  // the middle of the four frames it is computed from
 };
 
 /// The largest jerk of any node; none for clips of fewer than four frames.

@@ -9,9 +9,9 @@ namespace ukemi {
 namespace {
 
 constexpr double kEarly_s = 0.05;     // a foot may be off that long before the blow
-constexpr double kLastStep_s = 0.25;  // into the descent in which a step still is one
+constexpr double kLastStep_s = 0.25;  // of the descent, in which a step still counts
 constexpr double kAnswer_s = 0.9;     // within which a foot lifts that answers a blow, or follows such a one
-constexpr double kMan_kg = 78.0, kMan_m = 1.78;  // that momenta are told for
+constexpr double kMan_kg = 78.0, kMan_m = 1.78;  // the man that momenta are scaled to
 
 int frame_at(const BodyCourse& body, double time_s, int low, int high) {
   return std::clamp(frames_of(body, time_s), low, high);
@@ -97,7 +97,7 @@ Judgement judge(const JudgedMotion& motion, const JudgeSettings& settings) {
   Judgement judgement;
   Window window = window_of(body, settings, judgement);
   judgement.kind = settings.kind.value_or(kind_of(body, window));
-  // Of a clip of which nothing is known: who steps late does something else by then.
+  // Where nothing is known of a clip, a late step belongs to something else.
   if (judgement.kind == ReactionKind::stand && !settings.momentum_n_s)
     window.end = own_step(body, window).value_or(window.end);
   const Evidence evidence{motion, body, settings, window};

@@ -27,7 +27,7 @@ class Ends {
   }
 
  private:
-  /// Of a segment whose node has one, in the file.
+  /// The end site in the file, of a segment whose node has one.
   std::optional<Vec3> end_site(Segment segment) const {
     const int node = humanoid_.segments[index(segment)].node();
     if (node < 0 || !character_.bvh || !character_.bvh->end_site[node]) return std::nullopt;

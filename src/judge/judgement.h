@@ -1,4 +1,4 @@
-// What is said of a clip as the motion of a person: events, criteria with their bands, score.
+// The judgement of a clip as the motion of a person: events, criteria with their bands, score.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct JudgeSettings {
   std::optional<double> momentum_n_s;  // of the blow; default: unknown
   std::optional<Segment> hit;          // where it landed; default: unknown
   std::optional<ReactionKind> kind;    // default: found
-  bool knock_out = false;              // nobody is there to protect himself
+  bool knock_out = false;              // the body does not protect itself
 };
 
 /// Legal values, both ends included.
@@ -49,8 +49,8 @@ struct Judgement {
   JudgedOutcome outcome = JudgedOutcome::stood;
   JudgedPose final_pose = JudgedPose::standing;
   double impact_s = 0.0;
-  bool impact_found = false;  // it was not told
-  std::vector<Step> steps;    // before a fall, or of who stays up
+  bool impact_found = false;  // the time of the blow was found, not given
+  std::vector<Step> steps;    // before a fall, or of a body that stays up
   std::optional<FallEvents> fall;
   std::optional<GetUpEvents> get_up;
   std::vector<Criterion> criteria;  // by number

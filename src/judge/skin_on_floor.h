@@ -34,9 +34,9 @@ class SkinOverFloor {
   std::vector<Watched> watched_;
 };
 
-/// Of a whole clip.
+/// Depths over a whole clip.
 struct SkinOnFloor {
-  SkinDepth max;       // each where it is the deepest
+  SkinDepth max;       // each skin where it is deepest
   double end_m = 0.0;  // of the body's skin in the last frame
 };
 SkinOnFloor skin_on_floor(const SkinOverFloor& skin, const std::vector<Pose>& frames);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr double kGravity = 9.81;
 constexpr double kReaction_s = 1.0;  // in which the head's way peaks
-// Shares of 5 % beside the momenta that criteria name.
+// The momenta that the criteria name, with 5 % to either side.
 constexpr double kLeastSway = 4.75, kMostSway = 10.5;     // N s: a man sways and keeps his feet
 constexpr double kLeastFlinch = 7.6, kMostFlinch = 27.3;  // N s: a planted flinch
 constexpr double kGentlePush = 0.15;                 // m/s of the centre of mass where no momentum is known

@@ -191,6 +191,14 @@ class SceneConverter {
     }
   }
 
+  /// The node's name. A COLLADA scene without one gets the file's: importers name the armature after it.
+  std::string shown_name(const aiNode& node) const {
+    const std::string name = name_of(node.mName);
+    if (&node != scene_.mRootNode || !name.starts_with("$ColladaAutoName$")) return name;
+    const std::string file = load::utf8_name(path_.stem().string());
+    return scene_.mRootNode->FindNode(file.c_str()) == nullptr ? file : name;
+  }
+
   Json node_json(const aiNode& node) {
     const load::Decomposition parts = load::decompose(matrix_of(node.mTransformation));
     constexpr double kNoticeableShear = 0.01;
@@ -199,7 +207,7 @@ class SceneConverter {
     const Vec3& t = parts.local.translation;
     const Quat& r = parts.local.rotation;
     const Vec3& s = parts.local.scale;
-    Json json{{"name", name_of(node.mName)}};
+    Json json{{"name", shown_name(node)}};
     if (!t.isZero(0.0)) json["translation"] = {t.x(), t.y(), t.z()};
     if (!(r.vec().isZero(0.0))) json["rotation"] = {r.x(), r.y(), r.z(), r.w()};
     if (s != Vec3::Ones()) json["scale"] = {s.x(), s.y(), s.z()};

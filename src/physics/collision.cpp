@@ -12,7 +12,7 @@ namespace {
 constexpr int kMaxContacts = 4;
 constexpr int kMaxBoxContacts = 3;        // a fourth adds nothing but rows
 constexpr int kFullFrictionContacts = 2;  // of a pair
-constexpr double kNear = 0.005;           // m: points so near to one another carry as one
+constexpr double kNear = 0.005;           // m: points this near to one another carry as one
 constexpr double kPointRadius = 1e-3;     // m; never asked for
 constexpr double kSoftErp = 0.2;
 constexpr double kSoftCfm = 1e-5;

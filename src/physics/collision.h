@@ -48,7 +48,7 @@ class Collision {
   void add_prop(dGeomID geom, dBodyID body);
   /// Overlaps of the present pose that are no contact: shapes that fit a character may overlap at the start.
   void accept_overlaps();
-  /// What has come out of the floor meets it from then on. After an accepted step.
+  /// Shapes that have come out of the floor collide with it from then on. Call after an accepted step.
   void forget_overlaps(const Contacts& present);
   /// `whole_soles`: with every corner of the soles, so that a standing foot does not rock.
   Contacts find(bool whole_soles = false) const;
@@ -72,7 +72,7 @@ class Collision {
     int body = -1;  // of the model; -1 floor or prop
     Segment segment = Segment::pelvis;
     bool box = false;
-    std::vector<Vec3> points{};  // frame of the body, m: all that there is of it; it meets the floor alone
+    std::vector<Vec3> points{};  // frame of the body, m: the whole shape; it collides with the floor only
   };
   struct Pair {
     std::size_t a = 0, b = 0;

@@ -37,10 +37,10 @@ struct Goals {
   PerJoint<std::optional<SoftGoal>> tone;
   /// Soles do not slip while the body balances on them (friction of the soles without a bound).
   bool firm_soles = false;
-  /// A force from outside on the pelvis, world, N: for a director who wants what no person could do.
+  /// A force from outside on the pelvis, world, N: for outcomes that no person reaches (--assist).
   Vec3 help_n = Vec3::Zero();
 
-  /// Nothing is asked any more; keeps its memory.
+  /// Removes all goals, but keeps the memory for the next ones.
   void clear() {
     for (std::vector<JointGoal>& joint : joints) joint.clear();
     tone.fill(std::nullopt);

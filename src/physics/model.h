@@ -27,7 +27,7 @@ struct ModelBody {
   dBodyID id = nullptr;
   double mass_kg = 0.0;
   Vec3 centre = Vec3::Zero();   // centre of mass in the segment's frame
-  Mat3 inertia = Mat3::Zero();  // about it, segment axes
+  Mat3 inertia = Mat3::Zero();  // about the centre of mass, segment axes
 };
 
 struct ModelJoint {

@@ -10,8 +10,8 @@
 
 namespace ukemi {
 
-/// Muscle tone of one joint: the spring and damper of a SoftGoal, implicit. Beyond Era et al.: who is hit
-/// stiffens first and then gives way.
+/// Muscle tone of one joint: the spring and damper of a SoftGoal, implicit. Beyond Era et al.: a person
+/// who is hit stiffens first, then gives way.
 class Tone {
  public:
   Tone(OdeWorld& world, const Model& model, const ModelJoint& joint);
@@ -40,7 +40,7 @@ class Muscle {
  public:
   Muscle(OdeWorld& world, const Model& model, const ModelJoint& joint, const JointStrength& strength);
 
-  /// A new step, which may be tried several times.
+  /// Begins a step, which may be tried several times.
   void begin_step() { careful_ = wary_steps_ > 0, missed_ = false; }
   /// Every row has its bounds in the tries of this step that follow.
   void take_care() { careful_ = true; }

@@ -29,7 +29,7 @@ class OdeWorld {
 
   dWorldID id() const { return world_; }
   dJointGroupID contacts() const { return contacts_; }
-  /// After an OdeFailure since this world was made: nothing of it is touched any more.
+  /// After an OdeFailure since this world was made: this world must not be touched again.
   bool poisoned() const;
 
  private:

@@ -15,7 +15,7 @@ enum class Active { implicit, explicit_torque, off };
 /// Which rows are present in a step.
 struct Reach {
   double margin = 0.02;  // rad: rows this near always
-  double steps = 1.5;    // and those that the present speed reaches within so many steps
+  double steps = 1.5;    // and those that the present speed reaches within this many steps
 };
 
 /// The passive restriction of one joint. Sets its motors before each step.

@@ -36,12 +36,12 @@ struct Scene {
   double ball_speed_m_s = 6.0;  // at contact
   double ball_radius_m = 0.12;
   double slope_rad = radians(20.0);  // slope: of the ramp
-  std::vector<Load> loads;           // push, impulse: who takes it; none: the target, along the direction
-  double slippery_s = 0.0;           // slip: so long the soles find little hold
+  std::vector<Load> loads;           // push, impulse: shares of segments; none: all on the target
+  double slippery_s = 0.0;           // slip: how long the soles find little hold
   double push_force_n = 300.0;       // push: force on the target
   double push_duration_s = 0.2;
   double impulse_n_s = 30.0;   // impulse: momentum given to the target at once
-  double fall_height_m = 0.0;  // fall: the body starts so high above the floor
+  double fall_height_m = 0.0;  // fall: start height above the floor
   double tip_speed_m_s = 0.8;  // fall: of the centre of mass, about the feet, along the direction
 };
 

@@ -157,7 +157,7 @@ Vec3 aim_offset(const Vec3& direction, const BakeSettings& settings) {
   return settings.aim_up_m * up + settings.aim_left_m * left;
 }
 
-/// Who takes what hits more than one segment: the trunk's neighbour, or both legs.
+/// The second segment of a blow that hits two: the trunk's neighbour, or the other leg.
 Segment beside(Segment target) {
   switch (target) {
     case Segment::pelvis:

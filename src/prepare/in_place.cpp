@@ -17,9 +17,9 @@ constexpr double kRate_hz = 60.0;
 constexpr int kMostSamples = 600;
 constexpr double kDown = 0.35;        // share of the time in which the foot of a gait is down at the least
 constexpr double kLifted = 0.03;      // of the height: a foot that steps
-constexpr double kSlowest_m_s = 0.4;  // of a man of 1.75 m: slower feet slide by neglect
+constexpr double kSlowest_m_s = 0.4;  // of a man of 1.75 m: slower feet only slip
 constexpr double kAlike = 0.4;        // of the speed, between the feet
-constexpr double kBack = 0.3, kMostBack = 0.5;  // of the speed: so many of the slides go back so fast
+constexpr double kBack = 0.3, kMostBack = 0.5;  // of the speed: a slide goes back; share of slides that do
 constexpr double kGoesItself = 0.25;            // of that speed, by the pelvis
 
 struct Sample {

@@ -64,8 +64,8 @@ Result<std::size_t> clip_in(const Character& character, const std::string& name)
   return !named && digits ? find_clip(character, "#" + name) : named;
 }
 
-/// The character's bones by name, where the other file has them all: then they are the same in it, whatever
-/// their shape says. Empty where it has not.
+/// The character's bones by name, where the other file has them all: the same bones, whatever their
+/// shape says. Else empty.
 std::map<std::string, std::string> bones_by_name(const Character& character, const Humanoid& humanoid,
                                                  const Character& other) {
   std::map<std::string, std::string> map;

@@ -10,7 +10,7 @@
 
 namespace ukemi {
 
-/// What is said of the settings that differ from their defaults and have no effect: "--return-to has no
+/// Warnings about settings that differ from their defaults but have no effect: "--return-to has no
 /// effect without --return". `scene`: the one in force.
 std::vector<std::string> idle_settings(const BakeSettings& settings, SceneKind scene);
 

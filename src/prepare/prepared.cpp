@@ -42,8 +42,8 @@ double foot_height(const BodyPose& home, const BodyPose& pose, Segment foot) {
   return pose[index(foot)].translation.y() - home[index(foot)].translation.y();
 }
 
-/// When each foot of a motion that is in the air at the start comes down, s from then: it is low and goes on
-/// ahead of the pelvis no more. A foot that swings past the other is as low.
+/// Time, s from the start, at which each foot that is in the air at the start comes down: when it is low and
+/// no longer gains on the pelvis (a foot that swings past the other is as low).
 UnderWay under_way_of(const Character& character, const Prepared& prepared) {
   constexpr double kStep_s = 1.0 / 120.0;
   constexpr double kLookAhead_s = 0.6;
@@ -124,10 +124,11 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
   if (!start) return start.error();
   prepared.start = std::move(*start);
   if (settings.recover_s && settings.recover_to == RecoverTo::stance)
-    return usage_error("--to stance and --recover exclude each other",
-                       "leave --recover away to end as he stands, or take --to rest");
+    return usage_error("--return-to stance and --return exclude each other",
+                       "leave out --return to end as the body stands, or take --return-to rest");
   if (settings.recover_s && settings.recover_to == RecoverTo::clip && !prepared.start.motion)
-    return usage_error("--to clip needs a start clip to go back to", "add --clip NAME, or take --to rest");
+    return usage_error("--return-to clip needs a start clip to go back to",
+                       "add --clip NAME, or take --return-to rest");
   auto body = build_body(character, prepared.humanoid, prepared.start.pose, prepared.start.segments,
                          BodyOptions{settings.mass_kg.value_or(0.0), settings.sex}, diagnostics);
   if (!body) return body.error();
@@ -147,8 +148,8 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
   for (const std::string& idle : idle_settings(settings, prepared.scene.kind)) diagnostics.warn("", idle);
   for (const std::string& idle : idle_settings(settings, character)) diagnostics.warn("", idle);
   if (settings.latency_s && prepared.behaviour.under_way)
-    diagnostics.warn("",
-                     "--reaction-time has no effect: who walks or runs is in control of his steps already");
+    diagnostics.warn(
+        "", "--reaction-time has no effect on a body that walks or runs: it controls its steps already");
   return prepared;
 }
 

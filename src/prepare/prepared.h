@@ -20,7 +20,7 @@
 
 namespace ukemi {
 
-/// A character in its place, and what happens to it. Nothing of it changes afterwards.
+/// A character in its place, and what happens to it. It does not change afterwards.
 struct Prepared {
   std::string reaction;  // "head_left": name of the clip
   Humanoid humanoid;

@@ -338,8 +338,8 @@ Settings body_settings() {
                      [](auto& s) -> auto& { return s.mass_kg; }),
                  "73 kg (height / 1.741 m)^3, female 61.9 kg (height / 1.735 m)^3"),
       choice<S, Sex>(
-          "sex", {{"male", Sex::male}, {"female", Sex::female}}, "whose segment masses the body has",
-          [](auto& s) -> auto& { return s.sex; }),
+          "sex", {{"male", Sex::male}, {"female", Sex::female}},
+          "whether the segments have the masses of a man or a woman", [](auto& s) -> auto& { return s.sex; }),
   };
   for (const HumanoidSetting& setting : humanoid_settings()) settings.push_back(lifted(setting));
   return settings;
@@ -358,7 +358,7 @@ Settings start_settings() {
           "clip", "NAME|FILE[#NAME]",
           "motion to start from: a clip of the file, by its name or #INDEX, or of another humanoid's file "
           "(its "
-          "first, unless named after '#'), whose segments then lead the character's",
+          "first, unless named after '#'), carried over to the character",
           [](auto& s) -> auto& { return s.clip; }),
       with_unset(number<S>(
                      "at", "S", Range{0.0, 86400.0}, "time in the start clip at which the blow lands",
@@ -391,8 +391,8 @@ Setting knockout_setting() {
   setting.name = "knockout-at";
   setting.value = "S|blow|step|landing";
   setting.help =
-      "the lights go out: alive until S after the blow, from the blow on, when the first step is down or "
-      "balance lost, or when the fall has landed; limp from then on [0 to 60]";
+      "when the body is knocked out and goes limp: S after the blow, at the blow, once the first step is "
+      "down or balance is lost, or once the fall has landed [0 to 60]";
   setting.unset = "never";
   setting.set = [](BakeSettings& settings, const std::string& text) -> Status {
     const auto knockout = parse_knockout(text);
@@ -415,9 +415,9 @@ Settings behaviour_settings_table() {
       with_unset(choice<S, std::optional<Behaviour>>(
                      "behaviour",
                      {{"alert", Behaviour::alert}, {"dazed", Behaviour::dazed}, {"limp", Behaviour::limp}},
-                     "alert: balances, steps, protects itself; dazed: late and weak, one step to catch "
-                     "himself; limp: "
-                     "a body that nobody is in, which --stiffness stiffens at first",
+                     "alert: balances, steps, protects itself; dazed: late and weak, one step to keep "
+                     "its balance; limp: "
+                     "nobody is in the body, and --stiffness holds its pose at first",
                      [](auto& s) -> auto& { return s.behaviour; }),
                  "alert, or limp with --rate fixed"),
       number<S>(
@@ -426,7 +426,7 @@ Settings behaviour_settings_table() {
           [](auto& s) -> auto& { return s.most_steps; }),
       choice<S, std::optional<Wanted>>(
           "outcome", {{"auto", std::nullopt}, {"stand", Wanted::stand}, {"fall", Wanted::fall}},
-          "stand, fall: a take that ends so is searched for (--search); auto: whatever becomes of the body",
+          "stand, fall: searches for a take that ends so (--search); auto: takes what the blow leads to",
           [](auto& s) -> auto& { return s.outcome; }),
       with_unset(number<S>(
                      "search", "N", Range{1.0, 100.0},
@@ -571,10 +571,10 @@ Settings clip_settings() {
                  "none"),
       choice<S, RecoverTo>(
           "to", {{"stance", RecoverTo::stance}, {"rest", RecoverTo::rest}, {"clip", RecoverTo::clip}},
-          "where the clip leads: rest, the start pose (with --return); clip, what the start clip plays by "
-          "then, and who walks goes on walking with it (without --return too); stance: he stays as he came "
-          "to "
-          "stand",
+          "how the clip ends. rest: in the start pose (with --return); clip: in the start clip as it has run "
+          "on, and a walking body goes on walking with it (also without --return); stance: standing, as the "
+          "body "
+          "came to stand",
           [](auto& s) -> auto& { return s.recover_to; }),
       choice<S, RootMotion>(
           "root-motion",

@@ -56,7 +56,7 @@ const std::vector<HumanoidSetting>& humanoid_settings();
 /// All settings of a bake, in the order of the help; groups are contiguous.
 const std::vector<Setting>& bake_settings();
 
-/// The setting of that name, or that one of its other words names. Errors: usage, with the nearest name.
+/// The setting of that name or alias. Errors: usage, with the nearest name.
 Result<const Setting*> find_setting(std::string_view name);
 
 /// Whether every value in force is legal, however it came there. Errors: usage.

@@ -36,7 +36,7 @@ struct BakeSettings {
   std::optional<SceneKind> scene;           // the preset's unless given
   double strength = 1.0;                    // of the blow: times its momentum
   double aim_up_m = 0.0, aim_left_m = 0.0;  // ball, box: from the segment's centre, as the blow sees it
-  double fall_height_m = 0.0;               // fall: so high above the floor
+  double fall_height_m = 0.0;               // fall: start height above the floor
   double tip_speed_m_s = 0.8;               // fall: of the centre of mass
   double slope_deg = 20.0;                  // slope: of the ramp
   // body
@@ -57,9 +57,9 @@ struct BakeSettings {
   HoldingArms arms = HoldingArms::none;
   double muscle = 1.0;               // strength, of a healthy adult's
   std::optional<Knockout> knockout;  // alive until then
-  bool breathes = true;              // who lies and lives
+  bool breathes = true;              // of a living body that lies still
   std::optional<double> latency_s;   // unless given: the behaviour's
-  std::optional<double> get_up_s;    // gets up after lying so long; unless given: stays down
+  std::optional<double> get_up_s;    // gets up after lying for this time; unless given: stays down
   GetUpStyle get_up_style = GetUpStyle::plain;
   double seed = 0;  // varies stance, latency, arms and steps; 0: the mean of all
   // method
@@ -95,7 +95,7 @@ struct BakeSettings {
 /// The name a bake's clip gets: that of the settings, else SEGMENT_FROM.
 std::string reaction_name(const BakeSettings& settings);
 
-/// How long is simulated, s: unless told 3 limp, 4 alive, 12 for who gets up, so that he comes to rest first.
+/// Simulated time, s. Default: 3 for a limp body, 4 for a living one, 12 with a get-up, which begins at rest.
 double simulated_s(const BakeSettings& settings);
 
 /// The behaviour in force.

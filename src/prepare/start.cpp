@@ -43,7 +43,7 @@ Result<Pose> still_pose(const Character& character, const Humanoid& humanoid, co
                      suggestion(text, {"rest", "stand", "guard"}) + ", or name a .bvh, .glb or .fbx file");
 }
 
-/// Who is to keep his feet in place leans into the blow.
+/// A body that is to keep its feet planted leans into the blow.
 Vec2 braced_against(const BakeSettings& settings) {
   if (settings.most_steps > 0.0) return Vec2::Zero();
   return {std::cos(settings.from.azimuth), -std::sin(settings.from.azimuth)};
@@ -127,7 +127,7 @@ Result<std::optional<Animation>> motion_of(const Character& character, const Hum
     own = *clip;
   } else if (settings.pose || !is_motion_only(character)) {
     if (settings.at_s)
-      return usage_error("--at needs a clip to take the time from", "add --clip NAME, or leave --at away");
+      return usage_error("--at needs a clip to take the time from", "add --clip NAME, or leave out --at");
     return std::optional<Animation>();
   }
   std::optional<Animation> motion = character.animations[own];

@@ -29,7 +29,7 @@ class DrawnCharacter {
   Geometry ghost(int frame) const;
   /// All of a frame but the floor and the blow's arrow.
   FrameGeometry geometry(int frame) const;
-  /// Horizontal unit vector in which the figure looks at a frame; zero where nobody knows.
+  /// Horizontal unit vector in which the figure looks at a frame; zero where it is unknown.
   Vec3 facing(int frame) const;
 
  private:

@@ -1,4 +1,4 @@
-// The lights of a stage and what they leave dark on its floor, for whatever draws it.
+// The lights of a stage and the shadow on its floor, for every painter.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ struct ShadowBounds {
   Eigen::Vector3f high = Eigen::Vector3f::Constant(-1e30f);
 };
 
-/// Of what casts shadows; the focus where nothing does.
+/// Bounds of everything that casts shadows; the focus where nothing does.
 ShadowBounds shadow_bounds(const Geometry& geometry, const Vec3& focus);
 
 /// Square of the floor that holds the shadow: centre x, centre z, half side.

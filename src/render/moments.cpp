@@ -12,7 +12,7 @@ namespace {
 
 // Standing still counts a little, so that a long rest is not left out.
 constexpr double kIdleSpeed_m_s = 0.05;
-// Just after the impact motion counts up to three times: the blow is told by what is still small there.
+// Motion just after the impact counts up to three times, because what shows the blow is still small there.
 constexpr double kImpactWeight = 2.0;
 constexpr double kImpactFade_s = 0.15;
 constexpr double kPeakSpeed_m_s = 0.5;  // a slower clip has no peak worth naming

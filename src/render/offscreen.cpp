@@ -17,7 +17,7 @@ void* SharedLibrary::find(const char* symbol) const { return handle_ ? dlsym(han
 
 namespace {
 
-/// What the environment asks for, where nobody else asked.
+/// The kind that the environment asks for, where the caller asks for none.
 Result<OffscreenKind> in_force(OffscreenKind asked) {
   const char* value = std::getenv("UKEMI_OFFSCREEN");
   if (asked != OffscreenKind::any || value == nullptr || *value == '\0') return asked;

@@ -335,7 +335,7 @@ void Painter::State::draw_pieces(const Geometry& geometry) const {
   gl.FrontFace(GL_CCW);
 }
 
-/// Of what is seen through, only the front.
+/// Draws a transparent piece: its front faces only.
 void Painter::State::draw_front(const Geometry& geometry) const {
   if (geometry.indices.empty()) return;
   send(geometry);

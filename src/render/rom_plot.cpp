@@ -184,7 +184,7 @@ void draw_chords(Picture& page, const Fonts& fonts, const PlotScale& scale, cons
               14, kInk);
 }
 
-/// "flexion", or "a_z" with its sign where nobody said what it means.
+/// "flexion", or "a_z" with its sign where the range does not name its meaning.
 std::string meaning(const JointRange& range, std::size_t axis, bool positive) {
   constexpr std::array names = {"a_y", "a_z", "α"};
   const AxisMeaning& words = range.meanings[axis];

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kLongestPageSide = 32000;
 constexpr int kShortestCell = 64, kLongestCell = 4096;
-constexpr double kHole = 0.6;  // what empty places weigh beside an unusual aspect
+constexpr double kHole = 0.6;  // weight of empty places against that of an unusual aspect
 constexpr double kCellAspect = 320.0 / 360.0;
 
 Status check(const SheetOptions& options) {
@@ -97,7 +97,7 @@ void draw_footer(Picture& page, const Pen& pen, const Layout& layout, const Shot
     pen.fonts.regular.draw(page, left, baseline, text, size, pen.theme.soft_ink);
 }
 
-/// Cells in so many columns that fill the page; what does not fit comes out too small.
+/// Options whose cells fill the page in `columns` columns; cells that cannot fit come out too small.
 SheetOptions in_columns(SheetOptions options, int columns, int page_width, int page_height) {
   const int rows = (options.cells + columns - 1) / columns;
   double zoom = 1.0;

@@ -42,7 +42,7 @@ double time_of(const SpeedCurve& timeline) {
   return static_cast<double>(timeline.speeds.size() - 1) / timeline.fps;
 }
 
-/// A round tick at least so far from the next that its label has room.
+/// A round tick, far enough from the next for its label.
 double time_step(double duration_s, int width, double label_px) {
   return std::max(tick_step(duration_s, std::max(1, static_cast<int>(width / label_px))), 0.1);
 }

@@ -48,7 +48,7 @@ int timeline_height(const Pen& pen);
 /// The curve, below it a dot for every cell and the seconds.
 void draw_timeline(Picture& page, const Pen& pen, const SpeedCurve& timeline, const Box& box);
 
-/// A bar as long as a metre (or a part or a multiple of it) at the stage's focus, and what is said beside it.
+/// A bar as long as a metre (or a part or a multiple of it) at the stage's focus, and a text beside it.
 /// Returns the x after it.
 double draw_scale(Picture& page, const Pen& pen, const StageView& stage, int cell_height, int x, int baseline,
                   const std::string& remark);

@@ -123,7 +123,7 @@ class Grid {
     for (const Piece& piece : geometry.pieces) draw_piece(geometry, piece, false);
   }
 
-  /// Of what is seen through, only the front.
+  /// Draws a transparent piece: its front faces only.
   void draw_front(const Geometry& geometry) {
     if (geometry.indices.empty()) return;
     std::vector<std::optional<Corner>> corners;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kElevation = radians(14.0);
 constexpr double kMargin = 0.07;         // of half the picture
-constexpr double kFollow = 1.7;          // the camera follows where it would else stand this much farther off
+constexpr double kFollow = 1.7;          // the camera follows if it would else stand this much farther off
 constexpr double kFlesh_m = 0.07;        // about a joint, for frames whose skin is not looked at
 constexpr double kFloorSearch_m = 0.25;  // a lowest point this near to y = 0 stands on y = 0
 constexpr int kViewsAround = 12;

@@ -31,10 +31,10 @@ Status check_finite(const Shot& shot, const JointPaths& joints) {
   for (std::size_t frame = 0; frame < joints.size(); ++frame)
     for (const Vec3& joint : joints[frame])
       if (!joint.allFinite() || joint.norm() > 1e6)
-        return input_error(
-            shot.character->path,
-            fmt::format("frame {} of the clip '{}' has a joint that is nowhere", frame, shot.clip->name),
-            "check the clip's values");
+        return input_error(shot.character->path,
+                           fmt::format("frame {} of the clip '{}' has a joint whose position is not finite",
+                                       frame, shot.clip->name),
+                           "check the clip's values");
   return Done{};
 }
 

@@ -19,7 +19,7 @@ struct Studio {
 };
 
 /// Everything but the painter. Contract: the shot outlives the studio. Errors: input (a clip without frames,
-/// of another skeleton, with a joint that is nowhere).
+/// of another skeleton, with a joint that is not finite).
 Result<Studio> study(const Shot& shot, const Overlays& overlays);
 /// The painter, of pictures of the given size; one at a time may live. Errors: output when no off-screen
 /// context can be made.

@@ -13,7 +13,7 @@ constexpr double kFree = 0.06;  // of half the picture, at its edges
 constexpr int kLongestTextureSide = 256;
 
 /// The textures that a character's parts show. Many clips of one character are drawn one after another: the
-/// last one's are kept, for to decode them takes longer than to draw.
+/// last one's are kept, because decoding takes longer than drawing.
 const std::vector<Picture>& textures_of(const Character& character) {
   thread_local std::string kept_digest;
   thread_local std::vector<Picture> kept;

@@ -40,7 +40,7 @@ struct JointFrame {
   Quat relative_from_joint(const Quat& joint) const;
 };
 
-/// What an angle means: "flexion" above 0, "extension" below. Empty where nobody said.
+/// What an angle means: "flexion" above 0, "extension" below. Empty where the range does not say.
 struct AxisMeaning {
   std::string positive, negative;
 };

@@ -246,7 +246,7 @@ Json rom_json(const Character& character, const Humanoid& humanoid, const Clip& 
   return json;
 }
 
-/// Those that a bake wrote into the clip; else what its report tells.
+/// The marks that a bake wrote into the clip; else those of its report.
 std::vector<Mark> marks_of(const Animation& animation, const Told& told) {
   std::vector<Mark> marks = marks_in_extras(animation.extras_json);
   if (marks.empty()) return told.marks;

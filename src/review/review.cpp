@@ -68,7 +68,7 @@ std::string script(std::string_view kind, const std::string& key, const std::str
 /// The page's folder, and the files that this page put into it.
 class PageFolder {
  public:
-  /// `shared`: by processes that write the same, so that a file that is there need not be written.
+  /// `shared`: other processes write the same bytes, so a file that exists is left as it is.
   explicit PageFolder(fs::path folder, bool shared = false) : folder_(std::move(folder)), shared_(shared) {}
 
   /// Errors: output.
@@ -217,7 +217,7 @@ std::string part_text(const std::string& inputs, const Made& made) {
   return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
-/// What make_review_part left; nothing where it does not belong to these inputs.
+/// The part that make_review_part kept; nothing where it belongs to other inputs.
 std::optional<Made> part_in(const fs::path& file, const std::string& inputs) {
   const auto bytes = read_file(file, kMaxAssetBytes);
   const Json json = bytes ? Json::parse(*bytes, nullptr, false) : Json();

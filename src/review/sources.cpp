@@ -50,7 +50,7 @@ std::string text_at(const Json& json, std::initializer_list<const char*> keys) {
 
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-/// Fills what `target` does not tell.
+/// Copies the keys that `target` lacks or has as null.
 void complete(Json& target, const Json& from) {
   for (const auto& [key, value] : from.items())
     if (!target.contains(key) || target[key].is_null()) target[key] = value;

@@ -16,7 +16,7 @@ struct ReviewSource {
   std::string name;
   std::string status = "done";  // done, failed, rejected
   std::string error;            // of a reaction that failed
-  std::string digest;           // of what was baked; "" where nobody told
+  std::string digest;           // of the baked reaction; "" where it is unknown
   std::filesystem::path clip;   // that is played: the first .glb, else .gltf, else .bvh of the outputs
   std::filesystem::path report;
   std::filesystem::path sheet;

@@ -39,12 +39,13 @@ std::optional<Error> fault_of(const SimulationSettings& s) {
         fmt::format("use --active implicit, k up to {:g}, or a higher --rate", kMaxExplicitGain / h));
   if (s.active != Active::off && (!(s.active_k > 0.0) || !std::isfinite(s.active_k)))
     return usage_error("the active restriction's k must be above 0", "give --active-k, or --active off");
-  if (!within(tone_of(s), 0.0, 1.0)) return usage_error("the tone must lie within 0 to 1", "give --tone");
+  if (!within(tone_of(s), 0.0, 1.0))
+    return usage_error("the stiffness must lie within 0 to 1", "give --stiffness");
   if (!within(damping_of(s), 0.0, kHuge))
     return usage_error("the damping must not be negative", "give --damping");
   if (!within(s.tone_fade_s, 0.0, kHuge) || !within(s.active_delay_s, 0.0, kHuge))
-    return usage_error("times of tone and active restriction must not be negative",
-                       "give --tone-fade or --active-delay");
+    return usage_error("the times of stiffness and active restriction must not be negative",
+                       "give --stiffness-fade or --active-delay");
   if (!within(s.gravity, -kHuge, kHuge)) return usage_error("gravity is not a number", "give it in m/s^2");
   return std::nullopt;
 }

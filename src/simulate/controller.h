@@ -34,7 +34,7 @@ struct TouchDown {
   double speed_m_s = 0.0;  // of the point that touched, towards the floor, just before
 };
 
-/// How a body came down. Nothing of it before the fall.
+/// How a body came down; all empty before the fall.
 struct FallReport {
   std::optional<double> begins_s;   // protection began
   std::optional<double> landed_s;   // the body is down
@@ -53,7 +53,7 @@ struct GoesOn {
 struct ControllerReport {
   std::vector<StepTaken> steps;
   std::optional<double> fall_begins_s;  // balance was lost
-  std::optional<double> knocked_out_s;  // from then on nobody was there
+  std::optional<double> knocked_out_s;  // the body is limp from then on
   std::vector<BehaviourEvent> events;
   FallReport fall;
   std::optional<GoesOn> goes_on;  // with which the run ends

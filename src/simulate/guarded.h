@@ -8,7 +8,7 @@
 
 namespace ukemi {
 
-/// A behaviour failed. Not an exception of the standard library, so that nobody takes it for his own.
+/// A behaviour failed. Not an exception of the standard library, so that no other handler catches it.
 struct ControllerFailure {
   std::string joint;  // it was about; empty: the whole
   std::string what;   // without the time

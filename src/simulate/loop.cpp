@@ -46,7 +46,7 @@ class Simulation {
   SimulationResult result();
   const std::vector<double>& excesses() const { return recorder_.excesses(); }
   double time_s() const { return stepping_.tick_s * static_cast<double>(ticks_); }
-  /// When and where a joint first came apart or energy came from nowhere; the run goes on.
+  /// When and where a joint first came apart or energy rose without a cause; the run goes on.
   const std::optional<Diverged>& torn() const { return torn_; }
 
  private:
@@ -84,7 +84,8 @@ class Simulation {
 
 void Simulation::watch_energy() {
   if (torn_ || recorder_.energy_gain_j() < most_energy_j_) return;
-  torn_ = physics_.fastest(time_s(), fmt::format("{:.3g} J came from nowhere", recorder_.energy_gain_j()));
+  torn_ = physics_.fastest(time_s(),
+                           fmt::format("{:.3g} J of energy without a cause", recorder_.energy_gain_j()));
 }
 
 void Simulation::watch_joints(double separation) {

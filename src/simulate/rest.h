@@ -9,7 +9,7 @@ class RestWatch {
  public:
   /// After an accepted step of length h that ended at `time_s`, with the largest speeds of the body.
   void observe(double time_s, double h, double speed_m_s, double turning_rad_s);
-  /// Since when everything has been at rest, once that has lasted for a while.
+  /// Time from which everything has been at rest; known once that has lasted for a while.
   const std::optional<double>& since_s() const { return since_s_; }
 
  private:

@@ -101,7 +101,7 @@ struct SimulationInput {
 /// asks for what no muscle can give: joint, time).
 Result<SimulationResult> simulate(const SimulationInput& input, Diagnostics& diagnostics);
 
-/// A run as an experiment sees it: judged in a range of its own choice, and a failure is a result.
+/// A run for an experiment: judged by a range of the caller's choice; a failure is a result too.
 struct Trial {
   SimulationResult result;       // up to the failure, where there is one
   std::vector<double> excesses;  // of the samples outside, rad

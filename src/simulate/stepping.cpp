@@ -11,7 +11,7 @@ constexpr double kWorstExcess = radians(0.5);  // above: the step is rejected
 constexpr double kWorstSeparation = 0.006;     // m
 constexpr double kWorstSinking = 0.008;        // m, growth of a pair's depth in one step
 constexpr double kFloorDepth = 0.005;          // m: below this in the floor
-constexpr double kFloorSinking = 0.002;        // m: a pair may grow only so much
+constexpr double kFloorSinking = 0.002;        // m: how much deeper a pair may sink in a step
 
 }  // namespace
 

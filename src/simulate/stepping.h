@@ -17,7 +17,7 @@ struct Stepping {
   int calm_ticks = 8;
 };
 
-/// `refinement`: so many times shorter than the settings say.
+/// `refinement`: how many times shorter the steps are than the settings say.
 Stepping stepping_of(const SimulationSettings& settings, int refinement);
 PhysicsSettings physics_settings_of(const SimulationSettings& settings, const Stepping& stepping);
 
@@ -26,7 +26,7 @@ struct StepResult {
   std::vector<double> excesses;  // rad, joints of the model
   double separation_m = 0.0;
   double worst_excess() const;
-  /// The step is taken back and halved.
+  /// Whether the step is to be taken back and halved.
   bool is_bad() const;
 };
 
@@ -38,7 +38,7 @@ class StepLength {
  public:
   explicit StepLength(const Stepping& stepping) : stepping_(stepping) {}
   int next(long ticks) const;
-  /// After an accepted step.
+  /// Call after an accepted step.
   void observe(double worst_joint_speed);
 
  private:

@@ -177,7 +177,7 @@ TEST(Recovery, ToAClipNeedsOne) {
   Diagnostics diagnostics;
   const auto outcome = bake(mannequin(), settings, diagnostics);
   ASSERT_FALSE(outcome);
-  EXPECT_EQ(outcome.error().what, "--to clip needs a start clip to go back to");
+  EXPECT_EQ(outcome.error().what, "--return-to clip needs a start clip to go back to");
 }
 
 /// Hit on the chest while he walks, by so much of what the ball has.
@@ -229,7 +229,7 @@ TEST(GoingOn, WhoIsHitTooHardComesToStandAndItIsSaid) {
   EXPECT_FALSE(outcome->behaviour.goes_on);
   EXPECT_FALSE(outcome->behaviour.fall_begins_s);
   ASSERT_FALSE(diagnostics.warnings().empty());
-  EXPECT_NE(diagnostics.warnings().back().what.find("he comes to stand"), std::string::npos);
+  EXPECT_NE(diagnostics.warnings().back().what.find("comes to stand"), std::string::npos);
 }
 
 TEST(GoingOn, NobodyDoesWhoIsToKeepHisFeetInPlaceOrToFall) {

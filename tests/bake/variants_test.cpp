@@ -435,7 +435,7 @@ TEST(Variant, LeftCalledRightKeepsItsNamesWithAWarning) {
   ASSERT_TRUE(humanoid);
   EXPECT_EQ(character.skeleton.nodes[humanoid->carrier_node(Segment::hand_l)].name, "LeftHand");
   ASSERT_EQ(diagnostics.warnings().size(), 1u);
-  EXPECT_NE(diagnostics.warnings()[0].what.find("feet point backwards"), std::string::npos);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("the feet point backwards"), std::string::npos);
 }
 
 TEST(Variant, OfMisleadingNames) {

@@ -63,7 +63,7 @@ TEST_F(Refusal, OfClipSettingsThatDoNotGoTogether) {
   expect_refused({"bake", "mannequin", "-o", "a.glb", "--recover", "0.5", "--to", "stance"}, kMustChange,
                  "exclude each other");
   expect_refused({"bake", "mannequin", "-o", "a.glb", "--recover", "0.5", "--to", "clip"}, kMustChange,
-                 "--to clip needs a start clip");
+                 "--return-to clip needs a start clip");
   expect_refused({"bake", "mannequin", "-o", "a.bvh", "--additive", "rest"}, kMustChange,
                  "--additive is for glTF");
   expect_refused({"bake", "mannequin", "-o", "a.fbx", "--additive", "identity"}, kMustChange,

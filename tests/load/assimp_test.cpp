@@ -63,6 +63,15 @@ TEST(Assimp, DaeComesInMetresAndYUp) {
   EXPECT_NEAR(angle_between(turned[child].rotation, Quat::Identity()), radians(90), 1e-5);
 }
 
+TEST(Assimp, ADaeSceneWithoutANameIsCalledLikeTheFile) {
+  std::string text = dae(true);
+  text.replace(text.find(R"(<visual_scene id="scene">)"), 25, R"(<visual_scene id="" name="">)");
+  text.replace(text.find(R"(url="#scene")"), 12, R"(url="#")");
+  const auto c = read(text, "folder/figure.dae");
+  ASSERT_TRUE(c) << c.error().message();
+  EXPECT_EQ(c->skeleton.nodes.front().name, "figure");
+}
+
 TEST(Assimp, NodesOfTheDocumentAreThoseOfTheSkeleton) {
   const auto c = read(dae(true), "figure.dae");
   ASSERT_TRUE(c) << c.error().message();

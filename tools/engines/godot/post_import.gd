@@ -1,5 +1,5 @@
 # Godot 3: post-import script for baked .glb files ("Custom Script" in the Import dock).
-# Tried in Godot 3.2.3, headless: tests/engines.
+# Tried in Godot 3.2.3, headless: tests/clients.
 #
 # Beside FILE.glb it looks for FILE.events.json (ukemi bake --events, or "events" in a recipe's outputs) and, there or in
 # the folder above, for library.json (ukemi batch). Events become calls of ukemi_event(name) on the scene's root; clips

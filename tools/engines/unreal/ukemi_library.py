@@ -35,7 +35,10 @@ def import_table(csv_file, folder, struct_path):
 
 
 def add_notifies(batch_folder, folder):
-    """A sync marker for each event of every NAME.events.json whose clip was imported as FOLDER/NAME."""
+    """A notify for each event of every NAME.events.json whose clip was imported as FOLDER/NAME.
+
+    They are montage notifies: the notify name is the event's, and Play Montage passes it to On Notify Begin.
+    """
     library = unreal.AnimationLibrary
     for events_file in sorted(pathlib.Path(batch_folder).rglob("*.events.json")):
         name = events_file.name[: -len(".events.json")]
@@ -47,5 +50,8 @@ def add_notifies(batch_folder, folder):
             library.remove_animation_notify_track(sequence, TRACK)
         library.add_animation_notify_track(sequence, TRACK)
         for event in json.loads(events_file.read_text(encoding="utf-8"))["events"]:
-            library.add_animation_sync_marker(sequence, event["name"], event["time_s"], TRACK)
+            notify = library.add_animation_notify_event(
+                sequence, TRACK, event["time_s"], unreal.AnimNotify_PlayMontageNotify
+            )
+            notify.set_editor_property("notify_name", event["name"])
         unreal.EditorAssetLibrary.save_loaded_asset(sequence)
