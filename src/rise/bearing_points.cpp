@@ -30,7 +30,6 @@ class RestSearch {
     int count = 0;
     const auto close = [&] {
       if (rests.empty() || count == 0) return;
-      rests.back().place = at_height(sum / count, 0.0);
       if (rests.back().last - rests.back().first < kShortest_s * fps_) rests.pop_back();
       count = 0;
     };
@@ -74,6 +73,29 @@ int frames_in(const std::vector<Bearing>& rests) {
   return frames;
 }
 
+/// Where a part that bears already is, else where it is in the middle of its rest. `main`: another point of
+/// the segment that bears longer and says for both when that is.
+void place_rests(const std::vector<BodyPose>& motion, const BearingPoint* main, BearingPoint& point) {
+  for (Bearing& rest : point.rests) {
+    Bearing said = rest;
+    if (main)
+      for (const Bearing& other : main->rests)
+        if (2 * (std::min(rest.last, other.last) - std::max(rest.first, other.first)) >
+            rest.last - rest.first)
+          said = other;
+    const int frame = said.first == 0 ? 0 : (said.first + said.last) / 2;
+    rest.place = at_height(
+        on_ground(motion[static_cast<std::size_t>(frame)][index(point.segment)] * point.point), 0.0);
+  }
+}
+
+/// The half of a forearm at the wrist moves with the hand.
+bool is_of_next(const WholeBody& whole, Segment segment, const Vec3& point) {
+  if (segment != Segment::forearm_l && segment != Segment::forearm_r) return false;
+  const Joint wrist = segment == Segment::forearm_l ? Joint::wrist_l : Joint::wrist_r;
+  return point.norm() > 0.5 * whole.body().joints[index(wrist)].anchor_in_parent.norm();
+}
+
 }  // namespace
 
 std::vector<BearingPoint> bearing_points(const WholeBody& whole, const std::vector<BodyPose>& motion,
@@ -83,7 +105,7 @@ std::vector<BearingPoint> bearing_points(const WholeBody& whole, const std::vect
   for (const Segment segment : kLimbs) {
     std::vector<BearingPoint> candidates;
     for (const Vec3& point : whole.skin()[index(segment)])
-      if (auto rests = search.rests_of(segment, point); !rests.empty())
+      if (auto rests = search.rests_of(segment, point); !rests.empty() && !is_of_next(whole, segment, point))
         candidates.push_back({segment, point, std::move(rests)});
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const auto& a, const auto& b) { return frames_in(a.rests) > frames_in(b.rests); });
@@ -95,6 +117,7 @@ std::vector<BearingPoint> bearing_points(const WholeBody& whole, const std::vect
       if (apart) taken.push_back(std::move(candidate));
       if (taken.size() == kPoints) break;
     }
+    for (std::size_t i = 0; i < taken.size(); ++i) place_rests(motion, i > 0 ? &taken[0] : nullptr, taken[i]);
     for (BearingPoint& point : taken) result.push_back(std::move(point));
   }
   return result;

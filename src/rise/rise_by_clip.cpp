@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "body/fading.h"
 #include "body/on_ground.h"
@@ -18,10 +17,26 @@ const double kBeyond = radians(-0.5);  // a limp body lies with joints at their 
 constexpr double kSettles_s = 0.4;     // in which what lies in the floor comes out of it
 constexpr double kLevelling_s = 0.08;  // to either side
 constexpr double kPin = 600.0;         // 1/m
+constexpr double kArmPin = 400.0;      // 1/m: a straight arm bends fast where a hand is held hard
+constexpr double kStands = 250.0;      // 1/m, of the lowest part that can carry the body, on the floor
 constexpr double kTouch = 200.0;       // 1/m
+constexpr double kHolds_s = 0.06;      // before and after a part bears
 constexpr double kEase_s = 0.18;       // into and out of a place
 constexpr double kArc = 0.03;          // of the height: so high a hand or a foot is lifted on a long way
 constexpr double kLongWay = 0.025;     // of the height
+
+/// Skin of what can carry a body: arms and head may dip.
+OuterSkin support_skin(const WholeBody& whole) {
+  OuterSkin skin = trunk_skin(whole);
+  for (const Segment s : {Segment::shank_l, Segment::shank_r, Segment::foot_l, Segment::foot_r})
+    skin[index(s)] = whole.skin()[index(s)];
+  return skin;
+}
+
+bool is_arm(Segment segment) {
+  return segment == Segment::hand_l || segment == Segment::hand_r || segment == Segment::forearm_l ||
+         segment == Segment::forearm_r;
+}
 
 /// A figure with the charts of its joints.
 struct Charted {
@@ -41,6 +56,7 @@ class ClipRiser {
         entry_(entry),
         fps_(fps),
         trunk_(trunk_skin(whole)),
+        support_(support_skin(whole)),
         move_s_(std::clamp(entry.needed_s, ClipEntry::kShortest_s, ClipEntry::kLongest_s)) {}
 
   LedGetUp rise();
@@ -67,7 +83,7 @@ class ClipRiser {
   const RisingClip& clip_;
   const ClipEntry& entry_;
   double fps_;
-  OuterSkin trunk_;
+  OuterSkin trunk_, support_;
   double move_s_;
   std::vector<FigurePose> led_;        // the clip from its entry on, in ranges, where it is taken up
   std::vector<FigurePose> reference_;  // per frame
@@ -139,15 +155,7 @@ std::vector<FigurePose> ClipRiser::references() const {
   return figures;
 }
 
-/// Lowest skin of what can carry a body: arms and head may dip.
-double ClipRiser::lowest_support(const BodyPose& pose) const {
-  double low = std::numeric_limits<double>::infinity();
-  for (const Segment s :
-       {Segment::pelvis, Segment::abdomen, Segment::chest, Segment::thigh_l, Segment::thigh_r,
-        Segment::shank_l, Segment::shank_r, Segment::foot_l, Segment::foot_r})
-    low = std::min(low, whole_.lowest(pose, s));
-  return std::isfinite(low) ? low : 0.0;
-}
+double ClipRiser::lowest_support(const BodyPose& pose) const { return lowest_of(support_, pose); }
 
 /// Something always bears in a get-up: figures are moved up or down until it does.
 void ClipRiser::level(std::vector<FigurePose>& figures) const {
@@ -167,11 +175,12 @@ void ClipRiser::level(std::vector<FigurePose>& figures) const {
 
 /// Parts that bear stay where they do; before and after they are led there and away.
 void ClipRiser::add_bearing(int frame, const BodyPose& alike, PoseGoals& goals) const {
-  const double ease = kEase_s * fps_;
-  for (const BearingPoint& point : bearing_)
+  const double ease = kEase_s * fps_, holds = kHolds_s * fps_;
+  for (const BearingPoint& point : bearing_) {
+    const double pin = is_arm(point.segment) ? kArmPin : kPin;
     for (const Bearing& rest : point.rests) {
-      const double outside =
-          std::max({0.0, rest.first - static_cast<double>(frame), frame - static_cast<double>(rest.last)});
+      const double outside = std::max({0.0, rest.first - static_cast<double>(frame) - holds,
+                                       frame - static_cast<double>(rest.last) - holds});
       if (outside >= ease) continue;
       const double progress = 1.0 - outside / ease, share = min_jerk(progress);
       const Vec3 own = alike[index(point.segment)] * point.point;
@@ -179,8 +188,9 @@ void ClipRiser::add_bearing(int frame, const BodyPose& alike, PoseGoals& goals) 
       const double lies = settled(frame) * std::min(0.0, (lying_[index(point.segment)] * point.point).y());
       target.y() = (1.0 - share) * own.y() + share * lies;
       const double w = growing(progress);
-      goals.points.push_back({point.segment, point.point, target, w * Vec3(kPin, kTouch, kPin)});
+      goals.points.push_back({point.segment, point.point, target, w * Vec3(pin, kTouch, pin)});
     }
+  }
 }
 
 /// A hand or a foot that has a way to go into reach is lifted over the floor.
@@ -213,6 +223,7 @@ PoseGoals ClipRiser::goals_at(int frame, double likeness) const {
   const BodyPose& alike = alike_[frame];
   add_bearing(frame, alike, goals);
   add_arcs(frame, alike, goals);
+  goals.touches.push_back({&support_, kStands, settled(frame) * std::min(0.02, lowest_support(lying_))});
   const double h = whole_.body().height_m;
   const double over = (lowest_of(trunk_, alike) - 0.005 * h) / (0.03 * h);
   const double bears = 1.0 - min_jerk(over);
@@ -250,24 +261,11 @@ std::vector<GetUpPhase> ClipRiser::phases(const std::vector<BodyPose>& frames) c
   return {{"shifts", 0.0}, {"follows", move_s_}, {"rises", rises_s}, {"stands", end_s}};
 }
 
-#ifdef DEBUG_RISE
-void dbg(const char* what, const WholeBody& w, const std::vector<FigurePose>& fs, double fps) {
-  std::vector<BodyPose> b; for (auto& f : fs) b.push_back(w.segments(f));
-  std::vector<std::tuple<double,int,int>> v;
-  for (std::size_t f = 2; f < b.size(); ++f) { double m = 0; int s = 0; for (int i = 0; i < kSegmentCount; ++i) { double x = fps * (b[f][i].translation - 2 * b[f-1][i].translation + b[f-2][i].translation).norm(); if (x > m) m = x, s = i; } v.push_back({m, int(f), s}); }
-  std::sort(v.rbegin(), v.rend());
-  printf("   %-9s", what); for (int k = 0; k < 6; ++k) printf(" %.2f@%d %s", std::get<0>(v[k]), std::get<1>(v[k]), std::string(name(segment_at(std::get<2>(v[k])))).c_str()); printf("\n");
-}
-#else
-#define dbg(...)
-#endif
 LedGetUp ClipRiser::rise() {
   LedGetUp result;
   take_clip(result);
   reference_ = references();
-  dbg("ref", whole_, reference_, fps_);
   level(reference_);
-  dbg("level", whole_, reference_, fps_);
   for (const FigurePose& figure : reference_) alike_.push_back(whole_.segments(figure));
   bearing_ = bearing_points(whole_, alike_, fps_);
   const int last = static_cast<int>(reference_.size()) - 1;
@@ -277,23 +275,19 @@ LedGetUp ClipRiser::rise() {
         f == 0 ? reference_[0] : carried_on(reference_[f - 1], figures[f - 1], reference_[f]);
     figures.push_back(whole_.reach(goals_at(f, 20.0), from, f == 0 ? 12 : 6));
   }
-  dbg("pass1", whole_, figures, fps_);
   begin_as_he_lies(figures);
   figures = smoothed(whole_, figures, 0.045 * fps_);
-  dbg("smooth", whole_, figures, fps_);
-#ifdef DEBUG_RISE
-  for (auto& p : bearing_) for (auto& r : p.rests) printf("     %s %d-%d", std::string(name(p.segment)).c_str(), r.first, r.last);
-  printf("\n");
-#endif
-  GetUp& get_up = result.get_up;
-  get_up.frames.push_back(lying_);
   for (int f = 1; f <= last; ++f) {
     PoseGoals goals = goals_at(f, 40.0);
     goals.likeness = figures[f];
     goals.floor_weight = 800.0;
-    const FigurePose figure = whole_.reach(goals, figures[f], 4);
-    get_up.frames.push_back(whole_.segments(whole_.inside(figure, kBeyond)));
+    figures[f] = whole_.inside(whole_.reach(goals, figures[f], 5), kBeyond);
   }
+  figures = smoothed(whole_, figures, 0.03 * fps_);
+  GetUp& get_up = result.get_up;
+  get_up.frames.push_back(lying_);
+  for (int f = 1; f <= last; ++f)
+    get_up.frames.push_back(whole_.segments(whole_.inside(figures[f], kBeyond)));
   get_up.fps = fps_;
   get_up.route = "clip";
   get_up.phases = phases(get_up.frames);

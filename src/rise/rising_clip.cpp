@@ -14,7 +14,8 @@ constexpr double kStill_m_s = 0.08;    // root mean square of the segments, of a
 constexpr double kUpright_s = 1.0;     // that a motion may go on after the figure is upright, before it ends
 constexpr double kStill_s = 0.15;      // of a figure that has come to rest
 constexpr double kOnFloor = 0.30;      // of the height: pelvis of a body that lies, sits or kneels
-constexpr double kStands = 0.85;      // of the highest pelvis of the motion
+constexpr double kStands = 0.85;       // of the highest pelvis of the motion
+constexpr double kTrunkUp = 0.7;       // upward part of the trunk's axis, of a figure that stands
 constexpr double kRises = 0.32;        // of the height: pelvis of one that has begun to rise
 constexpr double kLookAt_hz = 20.0;    // moments of a clip
 constexpr double kVelocity_s = 0.10;   // metres that a metre a second counts
@@ -24,7 +25,8 @@ constexpr double kSkipped_m_s = 0.05;  // metres that a second of the clip that 
 // Means of moves whose peak is 1.875 times as fast: joints of captured get-ups are slower than 360 degrees a
 // second in 99 of 100 frames.
 constexpr double kJointSpeed = radians(190.0), kRollSpeed = radians(110.0);
-constexpr double kLimbSpeed = 1.0, kScootSpeed = 0.4;  // m/s, of a man of 1.75 m
+constexpr double kLimbSpeed = 1.0, kScootSpeed = 0.4, kHeadSpeed = 0.6;  // m/s, of a man of 1.75 m
+constexpr double kLiftSpeed = 0.15;  // m/s, of the pelvis: to lift it is a motion of its own
 
 double man_scale(const ArticulatedBody& body) { return std::sqrt(body.height_m / 1.75); }
 
@@ -86,6 +88,9 @@ double time_between(const ArticulatedBody& body, const BodyPose& a, const BodyPo
     if (!body.joints[j].fused) seconds = std::max(seconds, joint_turn(a, b, j) / kJointSpeed);
   const auto way = [&](Segment s) { return (b[index(s)].translation - a[index(s)].translation).norm(); };
   seconds = std::max(seconds, way(Segment::pelvis) / (kScootSpeed * man_scale(body)));
+  seconds =
+      std::max({seconds, way(Segment::head) / (kHeadSpeed * man_scale(body)),
+                std::abs(b[0].translation.y() - a[0].translation.y()) / (kLiftSpeed * man_scale(body))});
   for (const Segment s : {Segment::hand_l, Segment::hand_r, Segment::foot_l, Segment::foot_r})
     seconds = std::max(seconds, way(s) / (kLimbSpeed * man_scale(body)));
   return seconds;
@@ -139,6 +144,8 @@ struct Stretch {
   int first, last;
 };
 
+double trunk_up(const BodyPose& pose) { return (pose[index(Segment::chest)].rotation * Vec3::UnitY()).y(); }
+
 /// From the first frame on the floor to the last before the figure stands, of all that somebody gets up from.
 std::vector<Stretch> stretches_on_floor(const ArticulatedBody& body, const std::vector<BodyPose>& motion) {
   double highest = 0.0;
@@ -152,7 +159,7 @@ std::vector<Stretch> stretches_on_floor(const ArticulatedBody& body, const std::
       if (now.first < 0) now.first = f, low = false;
       now.last = f;
       low = low || pelvis_m < kOnFloor * body.height_m;
-    } else if (now.first >= 0 && pelvis_m > kStands * highest) {
+    } else if (now.first >= 0 && pelvis_m > kStands * highest && trunk_up(motion[f]) > kTrunkUp) {
       if (low) stretches.push_back(now);
       now.first = -1;
     }
