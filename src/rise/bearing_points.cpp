@@ -73,19 +73,29 @@ int frames_in(const std::vector<Bearing>& rests) {
   return frames;
 }
 
-/// Where a part that bears already is, else where it is in the middle of its rest. `main`: another point of
-/// the segment that bears longer and says for both when that is.
-void place_rests(const std::vector<BodyPose>& motion, const BearingPoint* main, BearingPoint& point) {
-  for (Bearing& rest : point.rests) {
-    Bearing said = rest;
-    if (main)
-      for (const Bearing& other : main->rests)
-        if (2 * (std::min(rest.last, other.last) - std::max(rest.first, other.first)) >
-            rest.last - rest.first)
-          said = other;
-    const int frame = said.first == 0 ? 0 : (said.first + said.last) / 2;
-    rest.place = at_height(
-        on_ground(motion[static_cast<std::size_t>(frame)][index(point.segment)] * point.point), 0.0);
+/// Places of the rests of a segment, in the order of time. A part that bears already stays where it is. A
+/// rest that begins while the segment rests on another point follows from where that is held; others are
+/// where the motion has them in their middle.
+void place_rests(const std::vector<BodyPose>& motion, std::vector<BearingPoint>& points) {
+  struct Rest {
+    const Vec3* point;
+    Bearing* rest;
+  };
+  std::vector<Rest> rests;
+  for (BearingPoint& point : points)
+    for (Bearing& rest : point.rests) rests.push_back({&point.point, &rest});
+  std::stable_sort(rests.begin(), rests.end(),
+                   [](const Rest& a, const Rest& b) { return a.rest->first < b.rest->first; });
+  const auto place = [&](int frame, const Vec3& point) {
+    return on_ground(motion[static_cast<std::size_t>(frame)][index(points.front().segment)] * point);
+  };
+  for (std::size_t i = 0; i < rests.size(); ++i) {
+    Bearing& rest = *rests[i].rest;
+    Vec2 at = place(rest.first == 0 ? 0 : (rest.first + rest.last) / 2, *rests[i].point);
+    for (std::size_t k = 0; k < i; ++k)
+      if (const Bearing& other = *rests[k].rest; other.last >= rest.first && rest.first > 0)
+        at = place(rest.first, *rests[i].point) + on_ground(other.place) - place(rest.first, *rests[k].point);
+    rest.place = at_height(at, 0.0);
   }
 }
 
@@ -117,7 +127,7 @@ std::vector<BearingPoint> bearing_points(const WholeBody& whole, const std::vect
       if (apart) taken.push_back(std::move(candidate));
       if (taken.size() == kPoints) break;
     }
-    for (std::size_t i = 0; i < taken.size(); ++i) place_rests(motion, i > 0 ? &taken[0] : nullptr, taken[i]);
+    if (!taken.empty()) place_rests(motion, taken);
     for (BearingPoint& point : taken) result.push_back(std::move(point));
   }
   return result;

@@ -20,16 +20,23 @@ constexpr double kPin = 600.0;         // 1/m
 constexpr double kArmPin = 400.0;      // 1/m: a straight arm bends fast where a hand is held hard
 constexpr double kStands = 250.0;      // 1/m, of the lowest part that can carry the body, on the floor
 constexpr double kTouch = 200.0;       // 1/m
-constexpr double kHolds_s = 0.06;      // before and after a part bears
-constexpr double kEase_s = 0.18;       // into and out of a place
+constexpr double kHolds_s = 0.035;     // before and after a part bears
+constexpr double kEase_s = 0.14;       // into and out of a place
+constexpr double kHandsLower = 0.09;   // of the height: so much longer may arms be than those of the clip
 constexpr double kArc = 0.03;          // of the height: so high a hand or a foot is lifted on a long way
 constexpr double kLongWay = 0.025;     // of the height
 
-/// Skin of what can carry a body: arms and head may dip.
+/// Skin of what can carry a body.
 OuterSkin support_skin(const WholeBody& whole) {
   OuterSkin skin = trunk_skin(whole);
   for (const Segment s : {Segment::shank_l, Segment::shank_r, Segment::foot_l, Segment::foot_r})
     skin[index(s)] = whole.skin()[index(s)];
+  return skin;
+}
+
+OuterSkin hand_skin(const WholeBody& whole) {
+  OuterSkin skin;
+  for (const Segment s : {Segment::hand_l, Segment::hand_r}) skin[index(s)] = whole.skin()[index(s)];
   return skin;
 }
 
@@ -57,6 +64,7 @@ class ClipRiser {
         fps_(fps),
         trunk_(trunk_skin(whole)),
         support_(support_skin(whole)),
+        hands_(hand_skin(whole)),
         move_s_(std::clamp(entry.needed_s, ClipEntry::kShortest_s, ClipEntry::kLongest_s)) {}
 
   LedGetUp rise();
@@ -68,6 +76,8 @@ class ClipRiser {
   double clip_time(double time_s) const;
   std::vector<FigurePose> references() const;
   void level(std::vector<FigurePose>& figures) const;
+  /// 1 where hands alone bear, the rest being well over them; 0 where they may dip into the floor.
+  double on_hands(const BodyPose& pose) const;
   double lowest_support(const BodyPose& pose) const;
   double settled(int frame) const { return 1.0 - min_jerk(frame / fps_ / kSettles_s); }
   PoseGoals goals_at(int frame, double likeness) const;
@@ -83,7 +93,7 @@ class ClipRiser {
   const RisingClip& clip_;
   const ClipEntry& entry_;
   double fps_;
-  OuterSkin trunk_, support_;
+  OuterSkin trunk_, support_, hands_;
   double move_s_;
   std::vector<FigurePose> led_;        // the clip from its entry on, in ranges, where it is taken up
   std::vector<FigurePose> reference_;  // per frame
@@ -155,7 +165,15 @@ std::vector<FigurePose> ClipRiser::references() const {
   return figures;
 }
 
-double ClipRiser::lowest_support(const BodyPose& pose) const { return lowest_of(support_, pose); }
+double ClipRiser::on_hands(const BodyPose& pose) const {
+  const double over = lowest_of(support_, pose) - lowest_of(hands_, pose);
+  return min_jerk((over / whole_.body().height_m - kHandsLower) / 0.08);
+}
+
+double ClipRiser::lowest_support(const BodyPose& pose) const {
+  const double low = lowest_of(support_, pose);
+  return low + on_hands(pose) * (lowest_of(hands_, pose) - low);
+}
 
 /// Something always bears in a get-up: figures are moved up or down until it does.
 void ClipRiser::level(std::vector<FigurePose>& figures) const {
@@ -185,8 +203,10 @@ void ClipRiser::add_bearing(int frame, const BodyPose& alike, PoseGoals& goals) 
       const double progress = 1.0 - outside / ease, share = min_jerk(progress);
       const Vec3 own = alike[index(point.segment)] * point.point;
       Vec3 target = (1.0 - share) * own + share * rest.place;
-      const double lies = settled(frame) * std::min(0.0, (lying_[index(point.segment)] * point.point).y());
-      target.y() = (1.0 - share) * own.y() + share * lies;
+      // The segment as it is turned, on the floor with its lowest skin.
+      const double over = own.y() - whole_.lowest(alike, point.segment);
+      const double lies = settled(frame) * std::min(0.0, whole_.lowest(lying_, point.segment));
+      target.y() = (1.0 - share) * own.y() + share * (over + lies);
       const double w = growing(progress);
       goals.points.push_back({point.segment, point.point, target, w * Vec3(pin, kTouch, pin)});
     }
@@ -223,7 +243,9 @@ PoseGoals ClipRiser::goals_at(int frame, double likeness) const {
   const BodyPose& alike = alike_[frame];
   add_bearing(frame, alike, goals);
   add_arcs(frame, alike, goals);
-  goals.touches.push_back({&support_, kStands, settled(frame) * std::min(0.02, lowest_support(lying_))});
+  if (const double weight = kStands * (1.0 - on_hands(alike)); weight > 0.0)
+    goals.touches.push_back(
+        {&support_, weight, settled(frame) * std::min(0.02, lowest_of(support_, lying_))});
   const double h = whole_.body().height_m;
   const double over = (lowest_of(trunk_, alike) - 0.005 * h) / (0.03 * h);
   const double bears = 1.0 - min_jerk(over);
@@ -277,12 +299,13 @@ LedGetUp ClipRiser::rise() {
   }
   begin_as_he_lies(figures);
   figures = smoothed(whole_, figures, 0.045 * fps_);
-  for (int f = 1; f <= last; ++f) {
+  for (int f = 0; f <= last; ++f) {
     PoseGoals goals = goals_at(f, 40.0);
     goals.likeness = figures[f];
     goals.floor_weight = 800.0;
     figures[f] = whole_.inside(whole_.reach(goals, figures[f], 5), kBeyond);
   }
+  begin_as_he_lies(figures);
   figures = smoothed(whole_, figures, 0.03 * fps_);
   GetUp& get_up = result.get_up;
   get_up.frames.push_back(lying_);

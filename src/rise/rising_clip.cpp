@@ -16,7 +16,7 @@ constexpr double kStill_s = 0.15;      // of a figure that has come to rest
 constexpr double kOnFloor = 0.30;      // of the height: pelvis of a body that lies, sits or kneels
 constexpr double kStands = 0.85;       // of the highest pelvis of the motion
 constexpr double kTrunkUp = 0.7;       // upward part of the trunk's axis, of a figure that stands
-constexpr double kRises = 0.32;        // of the height: pelvis of one that has begun to rise
+constexpr double kRises = 0.22;        // of the height: pelvis of one that has begun to rise
 constexpr double kLookAt_hz = 20.0;    // moments of a clip
 constexpr double kVelocity_s = 0.10;   // metres that a metre a second counts
 constexpr double kTurn_m = 0.12;       // metres that a radian counts
@@ -24,7 +24,7 @@ constexpr double kSkipped_m_s = 0.05;  // metres that a second of the clip that 
 
 // Means of moves whose peak is 1.875 times as fast: joints of captured get-ups are slower than 360 degrees a
 // second in 99 of 100 frames.
-constexpr double kJointSpeed = radians(190.0), kRollSpeed = radians(110.0);
+constexpr double kJointSpeed = radians(190.0), kRollSpeed = radians(90.0);
 constexpr double kLimbSpeed = 1.0, kScootSpeed = 0.4, kHeadSpeed = 0.6;  // m/s, of a man of 1.75 m
 constexpr double kLiftSpeed = 0.15;  // m/s, of the pelvis: to lift it is a motion of its own
 
@@ -71,8 +71,10 @@ Rigid best_fit(const ArticulatedBody& body, const BodyPose& from, const BodyPose
   return move;
 }
 
-double pelvis_turn(const BodyPose& a, const BodyPose& b) {
-  return angle_between(a[0].rotation, b[0].rotation);
+/// How far the trunk rolls.
+double trunk_turn(const BodyPose& a, const BodyPose& b) {
+  const auto turn = [&](Segment s) { return angle_between(a[index(s)].rotation, b[index(s)].rotation); };
+  return std::max(turn(Segment::pelvis), turn(Segment::chest));
 }
 
 double joint_turn(const BodyPose& a, const BodyPose& b, int joint) {
@@ -83,7 +85,7 @@ double joint_turn(const BodyPose& a, const BodyPose& b, int joint) {
 
 /// Seconds from one pose to the other, see kJointSpeed.
 double time_between(const ArticulatedBody& body, const BodyPose& a, const BodyPose& b) {
-  double seconds = pelvis_turn(a, b) / kRollSpeed;
+  double seconds = trunk_turn(a, b) / kRollSpeed;
   for (int j = 0; j < kJointCount; ++j)
     if (!body.joints[j].fused) seconds = std::max(seconds, joint_turn(a, b, j) / kJointSpeed);
   const auto way = [&](Segment s) { return (b[index(s)].translation - a[index(s)].translation).norm(); };
