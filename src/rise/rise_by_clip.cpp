@@ -22,7 +22,7 @@ constexpr double kStands = 250.0;      // 1/m, of the lowest part that can carry
 constexpr double kTouch = 200.0;       // 1/m
 constexpr double kHolds_s = 0.035;     // before and after a part bears
 constexpr double kEase_s = 0.14;       // into and out of a place
-constexpr double kHandsLower = 0.09;   // of the height: so much longer may arms be than those of the clip
+constexpr double kHandsLower = 0.16;   // of the height: so much longer may arms be than those of the clip
 constexpr double kArc = 0.03;          // of the height: so high a hand or a foot is lifted on a long way
 constexpr double kLongWay = 0.025;     // of the height
 

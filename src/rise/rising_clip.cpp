@@ -169,11 +169,21 @@ std::vector<Stretch> stretches_on_floor(const ArticulatedBody& body, const std::
   return stretches;
 }
 
-/// Where a get-up begins: after a fall the first stillness, and of a stillness its end.
-int beginning(const Stretch& stretch, const std::vector<double>& speeds, double still) {
+bool lies_flat(const ArticulatedBody& body, const BodyPose& pose) {
+  const Lying how = lying_of(body, pose);
+  return how != Lying::upright && how != Lying::seated && how != Lying::kneeling;
+}
+
+/// Where a get-up begins: after a fall at the end of the last stillness in which the figure lies, or of the
+/// first in which it sits or kneels; in a motion that begins on the floor at the end of its first stillness.
+int beginning(const ArticulatedBody& body, const std::vector<BodyPose>& motion, const Stretch& stretch,
+              const std::vector<double>& speeds, double still) {
   int f = stretch.first;
-  if (f > 0)
+  if (f > 0) {
+    for (int k = stretch.last; k > stretch.first; --k)
+      if (speeds[k] <= still && lies_flat(body, motion[k])) return k;
     while (f < stretch.last && speeds[f] > still) ++f;
+  }
   while (f < stretch.last && speeds[f] <= still) ++f;
   return f < stretch.last ? f : stretch.first;
 }
@@ -204,7 +214,7 @@ std::vector<RisingClip> rising_clips_of(const ArticulatedBody& body, const std::
     RisingClip clip;
     clip.name = name;
     clip.fps = fps;
-    const int first = beginning(stretches[i], speeds, still);
+    const int first = beginning(body, motion, stretches[i], speeds, still);
     clip.from_s = first / fps;
     clip.frames.assign(motion.begin() + first,
                        motion.begin() + ending(stretches[i], limit, speeds, fps, still) + 1);
