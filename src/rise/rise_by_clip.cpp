@@ -16,8 +16,7 @@ const double kMargin = radians(0.5);   // inside the ranges
 const double kBeyond = radians(-0.5);  // a limp body lies with joints at their ends, half a degree beyond
 constexpr double kSettles_s = 0.4;     // in which what lies in the floor comes out of it
 constexpr double kLevelling_s = 0.08;  // to either side
-constexpr double kPin = 600.0;         // 1/m
-constexpr double kArmPin = 400.0;      // 1/m: a straight arm bends fast where a hand is held hard
+constexpr double kPin = 700.0;         // 1/m
 constexpr double kStands = 250.0;      // 1/m, of the lowest part that can carry the body, on the floor
 constexpr double kTouch = 200.0;       // 1/m
 constexpr double kHolds_s = 0.035;     // before and after a part bears
@@ -38,11 +37,6 @@ OuterSkin hand_skin(const WholeBody& whole) {
   OuterSkin skin;
   for (const Segment s : {Segment::hand_l, Segment::hand_r}) skin[index(s)] = whole.skin()[index(s)];
   return skin;
-}
-
-bool is_arm(Segment segment) {
-  return segment == Segment::hand_l || segment == Segment::hand_r || segment == Segment::forearm_l ||
-         segment == Segment::forearm_r;
 }
 
 /// A figure with the charts of its joints.
@@ -195,7 +189,6 @@ void ClipRiser::level(std::vector<FigurePose>& figures) const {
 void ClipRiser::add_bearing(int frame, const BodyPose& alike, PoseGoals& goals) const {
   const double ease = kEase_s * fps_, holds = kHolds_s * fps_;
   for (const BearingPoint& point : bearing_) {
-    const double pin = is_arm(point.segment) ? kArmPin : kPin;
     for (const Bearing& rest : point.rests) {
       const double outside = std::max({0.0, rest.first - static_cast<double>(frame) - holds,
                                        frame - static_cast<double>(rest.last) - holds});
@@ -208,7 +201,7 @@ void ClipRiser::add_bearing(int frame, const BodyPose& alike, PoseGoals& goals) 
       const double lies = settled(frame) * std::min(0.0, whole_.lowest(lying_, point.segment));
       target.y() = (1.0 - share) * own.y() + share * (over + lies);
       const double w = growing(progress);
-      goals.points.push_back({point.segment, point.point, target, w * Vec3(pin, kTouch, pin)});
+      goals.points.push_back({point.segment, point.point, target, w * Vec3(kPin, kTouch, kPin)});
     }
   }
 }
