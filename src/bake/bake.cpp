@@ -272,6 +272,29 @@ void warn_of_unrest(const BakeSettings& settings, const BakedClip& baked, Diagno
                       simulated_s(settings)));
 }
 
+/// Says where no clip of the library was in reach, and where one bends joints beyond their ranges.
+void warn_of_get_up_clip(const BakedClip& outcome, Diagnostics& diagnostics) {
+  constexpr double kNoticed_deg = 5.0;
+  if (!outcome.get_up || !outcome.get_up->clip) return;
+  const NearestClip& clip = *outcome.get_up->clip;
+  const BodyPose& lying = outcome.timeline.trajectory.frames[static_cast<std::size_t>(
+      std::lround((outcome.timeline.impact_s + outcome.get_up->begins_s) * outcome.timeline.trajectory.fps))];
+  if (!clip.leads)
+    diagnostics.warn(
+        clip.name,
+        fmt::format(
+            "the nearest get-up of --get-up-clip begins {:.0f} cm and {:.0f} degrees away from how the "
+            "body lies ({}), which takes {:.1f} s to reach and not {:.1f}: the get-up is planned "
+            "instead; add one that begins {}",
+            100.0 * clip.apart_m, clip.turned_deg, name(lying_of(outcome.prepared.body, lying)),
+            clip.needed_s, ClipEntry::kLongest_s, name(lying_of(outcome.prepared.body, lying))));
+  else if (clip.excess_deg > kNoticed_deg && clip.excess_joint)
+    diagnostics.warn(clip.name,
+                     fmt::format("bends '{}' up to {:.0f} degrees beyond its range of motion: it is "
+                                 "held at its end",
+                                 name(*clip.excess_joint), clip.excess_deg));
+}
+
 /// The body was to go on with the start clip, but came to stand.
 void warn_of_stopping(const BakedClip& baked, Diagnostics& diagnostics) {
   if (!baked.prepared.behaviour.goes_on || baked.behaviour.goes_on || baked.behaviour.fall_begins_s) return;
@@ -299,6 +322,7 @@ Result<BakedClip> bake(const Character& character, const BakeSettings& settings,
   if (!found) return found.error();
   warn_of_unrest(settings, *found, diagnostics);
   warn_of_stopping(*found, diagnostics);
+  warn_of_get_up_clip(*found, diagnostics);
   warn_of_sinking_skin(character, found->skin, diagnostics);
   found->timings_s.load = load_s;
   found->timings_s.total = watch.total();

@@ -51,7 +51,8 @@ Json settings_json(const BakeSettings& settings, const BakedClip& outcome) {
   json["until_rest"] = settings.until_rest;
   json["hold_s"] = settings.until_rest ? Json(settings.hold_s) : Json(nullptr);
   json["lead_s"] = outcome.timeline.impact_s;
-  json["get_up_s"] = or_null<Json>(settings.get_up_s);
+  json["get_up_s"] = or_null<Json>(gets_up_after_s(settings));
+  json["get_up_clip"] = settings.get_up_clip.empty() ? Json(nullptr) : Json(settings.get_up_clip);
   json["recover_s"] = or_null<Json>(settings.recover_s);
   json["recover_to"] =
       settings.recover_s ? Json(settings.recover_to == RecoverTo::clip ? "clip" : "rest") : Json(nullptr);
@@ -146,6 +147,17 @@ Json first_contact_json(const std::optional<TouchDown>& touch) {
   return json;
 }
 
+Json nearest_clip_json(const std::optional<NearestClip>& clip) {
+  if (!clip) return nullptr;
+  return {{"name", clip->name},
+          {"from_s", clip->from_s},
+          {"leads", clip->leads},
+          {"apart_m", clip->apart_m},
+          {"turned_deg", clip->turned_deg},
+          {"needed_s", clip->needed_s},
+          {"excess_deg", clip->excess_deg}};
+}
+
 Json get_up_json(const BakedClip& outcome) {
   if (!outcome.get_up) return nullptr;
   const double impact_s = outcome.timeline.impact_s;
@@ -155,6 +167,8 @@ Json get_up_json(const BakedClip& outcome) {
   return {{"begins_s", outcome.get_up->begins_s + impact_s},
           {"stands_s", outcome.get_up->stands_s + impact_s},
           {"route", outcome.get_up->route},
+          {"clip", nearest_clip_json(outcome.get_up->clip)},
+          {"slide_max_m", get_up_slide(outcome)},
           {"phases", std::move(phases)}};
 }
 

@@ -11,11 +11,21 @@ struct ReportKey {
 };
 
 inline constexpr ReportKey kReportSettings[] = {
-    {"hit", "impact", "segment"},     {"from", "impact", "from"},       {"preset", "impact", "preset"},
-    {"scene", "impact", "scene"},     {"pose", "settings", "pose"},     {"clip", "settings", "clip"},
-    {"at_s", "settings", "at_s"},     {"region", "settings", "region"}, {"limits", "settings", "limits"},
-    {"active", "settings", "active"}, {"tone", "settings", "tone"},     {"rate", "settings", "rate"},
-    {"fps", "settings", "fps"},       {"seed", "settings", "seed"},
+    {"hit", "impact", "segment"},
+    {"from", "impact", "from"},
+    {"preset", "impact", "preset"},
+    {"scene", "impact", "scene"},
+    {"pose", "settings", "pose"},
+    {"clip", "settings", "clip"},
+    {"at_s", "settings", "at_s"},
+    {"region", "settings", "region"},
+    {"limits", "settings", "limits"},
+    {"active", "settings", "active"},
+    {"tone", "settings", "tone"},
+    {"rate", "settings", "rate"},
+    {"fps", "settings", "fps"},
+    {"seed", "settings", "seed"},
+    {"get_up_clip", "settings", "get_up_clip"},
 };
 
 inline constexpr ReportKey kReportFigures[] = {

@@ -130,6 +130,19 @@ double foot_slide(const ArticulatedBody& body, const BodyPose& home, const Traje
   return most;
 }
 
+double get_up_slide(const BakedClip& outcome) {
+  if (!outcome.get_up) return 0.0;
+  const Trajectory& trajectory = outcome.timeline.trajectory;
+  const auto begins = std::lround((outcome.timeline.impact_s + outcome.get_up->begins_s) * trajectory.fps);
+  double most = 0.0;
+  for (const PlantedPart& part : outcome.get_up->planted)
+    for (long f = begins + part.first; f <= begins + part.last; ++f) {
+      const BodyPose& frame = trajectory.frames.at(static_cast<std::size_t>(f));
+      most = std::max(most, horizontal_norm(frame[index(part.segment)] * part.point - part.place));
+    }
+  return most;
+}
+
 std::string outcome_text(const Response& response) {
   const std::size_t steps = response.steps.size();
   std::string how(name(response.outcome));

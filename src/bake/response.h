@@ -48,6 +48,9 @@ EndPose final_pose_of(const BodyPose& start, const BodyPose& end);
 double foot_slide(const ArticulatedBody& body, const BodyPose& home, const Trajectory& trajectory,
                   const std::vector<StepTaken>& steps, double until_s);
 
+/// How far a part that bears in the get-up moves over the floor at the most, m. 0 without a get-up.
+double get_up_slide(const BakedClip& outcome);
+
 /// "stepped 3 times, ends standing".
 std::string outcome_text(const Response& response);
 

@@ -143,9 +143,9 @@ Status make_timeline(const Character& character, const BakeSettings& settings, T
   const auto skin = outermost_skin(character, prepared.humanoid, prepared.start.pose, prepared.start.segments,
                                    prepared.body);
   outcome.ground_lift_max_m = lift_skin_above_floor(trajectory.frames, trajectory.fps, skin);
-  if (settings.get_up_s)
+  if (gets_up_after_s(settings))
     outcome.get_up = add_get_up(
-        prepared.body, prepared.range, prepared.start.state.segments, skin,
+        {prepared.body, prepared.range, prepared.start.state.segments, skin, prepared.get_ups.get()},
         {settings.get_up_style, static_cast<std::uint64_t>(settings.seed), trajectory.fps}, trajectory);
   outcome.timeline = timeline_of(actor, std::move(trajectory), prepared.reaction, outcome.resample_error);
   Clip& clip = outcome.timeline.clip;
@@ -206,13 +206,13 @@ Result<BakedClip> clip_of_take(const Character& character, const BakeSettings& s
   outcome.returns_s = settings.recover_s.value_or(outcome.behaviour.goes_on ? kGoesOn_s : 0.0);
   end_where_it_goes_on(outcome.behaviour.goes_on, trajectory);
   const bool blow = prepared.scene.kind != SceneKind::none;
-  const bool gets_up =
-      settings.get_up_s && lying_of(prepared.body, trajectory.frames.back()) != Lying::upright;
+  const std::optional<double> get_up_s = gets_up_after_s(settings);
+  const bool gets_up = get_up_s && lying_of(prepared.body, trajectory.frames.back()) != Lying::upright;
   const auto& rest_s = outcome.figures.rest_time_s;
   if ((settings.until_rest && blow) || gets_up)
     trim_still_tail(trajectory, rest_s,
-                    gets_up ? *settings.get_up_s : settings.hold_s + breath_s(prepared, outcome.behaviour));
-  if (gets_up && rest_s) hold_last_frame(*rest_s + *settings.get_up_s, trajectory);
+                    gets_up ? *get_up_s : settings.hold_s + breath_s(prepared, outcome.behaviour));
+  if (gets_up && rest_s) hold_last_frame(*rest_s + *get_up_s, trajectory);
   if (prepared.behaviour.kind != Behaviour::limp)
     end_in_start_pose(prepared.start.state.segments, outcome.behaviour, trajectory);
   if (const Status status = check_clip_size(character, settings, trajectory); !status) return status.error();

@@ -14,8 +14,8 @@ namespace ukemi {
 namespace {
 
 // Settings that a character may not fit, whatever hits it.
-constexpr std::array<std::string_view, 9> kOfCharacter = {"map",  "root", "unit", "up", "height",
-                                                          "mass", "pose", "clip", "at"};
+constexpr std::array<std::string_view, 10> kOfCharacter = {"map",  "root", "unit", "up", "height",
+                                                           "mass", "pose", "clip", "at", "get-up-clip"};
 
 /// Reactions that fail alike where they fail.
 std::string key_of(const Reaction& reaction) {

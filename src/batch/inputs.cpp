@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/character_path.h"
@@ -32,6 +33,21 @@ std::vector<fs::path> files_named_by(const fs::path& gltf, std::span<const std::
       if (!text.starts_with("data:")) files.push_back(gltf.parent_path() / percent_decoded(text));
     }
   }
+  return files;
+}
+
+/// The files that the value of a setting names: itself, the file before "#NAME", or those of a folder.
+std::vector<fs::path> files_of(const Setting& setting, const std::string& value) {
+  std::error_code error;
+  if (setting.value.find("FILE") == std::string::npos) return {};
+  if (fs::is_regular_file(value, error)) return {value};
+  for (std::size_t hash = value.find('#'); hash != std::string::npos; hash = value.find('#', hash + 1))
+    if (fs::is_regular_file(value.substr(0, hash), error)) return {value.substr(0, hash)};
+  std::vector<fs::path> files;
+  if (setting.value.find("DIR") != std::string::npos && fs::is_directory(value, error))
+    for (const auto& entry : fs::directory_iterator(value, error))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
   return files;
 }
 
@@ -94,12 +110,14 @@ Result<std::string> InputDigests::of(const Reaction& reaction) {
   for (const Setting& setting : bake_settings()) {
     digest.add_field(setting.name);
     for (const std::string& value : setting.get(reaction.settings)) {
-      std::error_code error;
-      const bool names_file =
-          setting.value.find("FILE") != std::string::npos && fs::is_regular_file(value, error);
-      const auto part = names_file ? of_file(value) : Result<std::string>(value);
-      if (!part) return part.error();
-      digest.add_field(*part);
+      const std::vector<fs::path> files = files_of(setting, value);
+      const bool is_file = files.size() == 1 && files.front() == value;
+      if (!is_file) digest.add_field(value);
+      for (const fs::path& file : files) {
+        const auto part = of_file(file);
+        if (!part) return part.error();
+        digest.add_field(*part);
+      }
     }
   }
   digest.add_field(reaction.name);

@@ -109,7 +109,7 @@ void vary(const Jitter& jitter, Reaction& reaction) {
     settings.aim_left_m += rounded(left, 1e-4);
   }
   if (jitter.strength_percent > 0.0) settings.strength *= 1.0 + rounded(stronger, 1e-4);
-  const bool varies = behaviour_settings(settings).kind != Behaviour::limp || settings.get_up_s;
+  const bool varies = behaviour_settings(settings).kind != Behaviour::limp || gets_up_after_s(settings);
   if (settings.seed == 0.0 && varies) settings.seed = static_cast<double>(random.next() >> 32);
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/errors.h"
+#include "body/fading.h"
 #include "body/ground.h"
 #include "clip/ground_motion.h"
 #include "clip/lead.h"
@@ -13,8 +14,7 @@
 namespace ukemi {
 namespace {
 
-constexpr double kUpright = 0.7;    // of the pelvis's height: a lower body does not stand
-constexpr double kCarryOn_s = 0.3;  // in which the velocities at the end of the simulation fade
+constexpr double kUpright = 0.7;  // of the pelvis's height: a lower body does not stand
 constexpr double kFloorSmoothing_s = 0.06;
 
 using SegmentVertices = PerSegment<std::vector<Vec3>>;
@@ -45,21 +45,6 @@ double lowest(const BodyPose& frame, const SegmentVertices& skin) {
     for (const Vec3& point : skin[s]) low = std::min(low, (frame[s] * point).y());
   return low;
 }
-
-/// 0 to 1 with still ends: no velocity, no acceleration.
-double smooth_step(double x) { return x * x * x * (10.0 + x * (6.0 * x - 15.0)); }
-
-/// Where an offset with a velocity is, on its way to nothing (after Bollo, "Inertialization", GDC 2018).
-struct Fading {
-  Vec3 offset = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
-
-  Vec3 at(double time_s, double duration_s) const {
-    const double carry_s = std::min(duration_s, kCarryOn_s);
-    const double left = std::max(0.0, 1.0 - time_s / carry_s);
-    return (1.0 - smooth_step(time_s / duration_s)) * offset + time_s * left * left * left * velocity;
-  }
-};
 
 /// From the end of the simulation to a target, node by node.
 class Blend {
@@ -116,7 +101,7 @@ void keep_on_floor(const Actor& actor, double fps, const SegmentFrames& frames, 
   const int last = static_cast<int>(poses.size()) - 1;
   std::vector<double> lift;
   for (int i = 0; i <= last; ++i) {
-    const double share = smooth_step(static_cast<double>(i) / last);
+    const double share = min_jerk(static_cast<double>(i) / last);
     lift.push_back((1.0 - share) * low.front() + share * low.back() - low[i]);
   }
   const int widest = frames_in(kFloorSmoothing_s, fps);

@@ -154,32 +154,60 @@ Vec3 pelvis_of(const Character& character, const Humanoid& humanoid, const Pose&
   return segments_of(character.skeleton, humanoid, pose)[index(Segment::pelvis)].translation;
 }
 
+/// A file that holds the clip, or any.
+Result<Source> open_with_clip(const Character& character, const Humanoid& humanoid, const std::string& text,
+                              Diagnostics& diagnostics) {
+  auto source = open(character, humanoid, text, diagnostics);
+  if (source && !source->clip)
+    return input_error(source->character.path, "holds no clip",
+                       "name a file with a clip, or use it as --pose");
+  return source;
+}
+
+/// A clip of another file as motion of the character.
+Animation motion_of(const Character& character, const Humanoid& humanoid, const Source& source,
+                    std::size_t which) {
+  const Animation& clip = source.character.animations[which];
+  const Transfer transfer(character, humanoid, source.character, source.humanoid);
+  const std::vector<double> times = key_times(clip);
+  std::vector<Pose> poses;
+  for (const double time_s : times)
+    poses.push_back(transfer(sample(source.character.skeleton, clip, clip.start_s + time_s)));
+  Vec3 offset =
+      pelvis_of(character, humanoid, humanoid.reference) - pelvis_of(character, humanoid, poses.front());
+  offset.y() = -floor_of(character, humanoid, poses);
+  for (Pose& pose : poses) pose = moved(character.skeleton, humanoid, pose, offset);
+  Animation animation = animation_of(character.skeleton, times, poses);
+  animation.name =
+      fmt::format("{}: {}", source.character.path.filename().string(), clip_label(source.character, which));
+  animation.fps = clip.fps;
+  return animation;
+}
+
 }  // namespace
 
 bool names_motion_file(std::string_view text) { return split(text).has_value(); }
 
 Result<Animation> motion_of_file(const Character& character, const Humanoid& humanoid,
                                  const std::string& text, Diagnostics& diagnostics) {
-  const auto source = open(character, humanoid, text, diagnostics);
+  const auto source = open_with_clip(character, humanoid, text, diagnostics);
   if (!source) return source.error();
-  if (!source->clip)
-    return input_error(source->character.path, "holds no clip",
-                       "name a file with a clip, or use it as --pose");
-  const Animation& clip = source->character.animations[*source->clip];
-  const Transfer transfer(character, humanoid, source->character, source->humanoid);
-  const std::vector<double> times = key_times(clip);
-  std::vector<Pose> poses;
-  for (const double time_s : times)
-    poses.push_back(transfer(sample(source->character.skeleton, clip, clip.start_s + time_s)));
-  Vec3 offset =
-      pelvis_of(character, humanoid, humanoid.reference) - pelvis_of(character, humanoid, poses.front());
-  offset.y() = -floor_of(character, humanoid, poses);
-  for (Pose& pose : poses) pose = moved(character.skeleton, humanoid, pose, offset);
-  Animation animation = animation_of(character.skeleton, times, poses);
-  animation.name = fmt::format("{}: {}", source->character.path.filename().string(),
-                               clip_label(source->character, *source->clip));
-  animation.fps = clip.fps;
-  return animation;
+  return motion_of(character, humanoid, *source, *source->clip);
+}
+
+Result<std::vector<Animation>> motions_of_file(const Character& character, const Humanoid& humanoid,
+                                               const std::string& text, Diagnostics& diagnostics) {
+  const auto source = open_with_clip(character, humanoid, text, diagnostics);
+  if (!source) return source.error();
+  std::vector<Animation> motions;
+  const auto wanted = split(text);
+  if (wanted && wanted->clip) {
+    motions.push_back(motion_of(character, humanoid, *source, *source->clip));
+    return motions;
+  }
+  for (std::size_t clip = 0; clip < source->character.animations.size(); ++clip)
+    motions.push_back(motion_of(character, humanoid, *source, clip));
+  return motions;
 }
 
 Animation going_on(const Skeleton& skeleton, const Humanoid& humanoid, const Animation& clip,

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/character.h"
 #include "base/result.h"
@@ -20,6 +21,11 @@ bool names_motion_file(std::string_view text);
 /// not a humanoid, no clips), usage (no such clip).
 Result<Animation> motion_of_file(const Character& character, const Humanoid& humanoid,
                                  const std::string& text, Diagnostics& diagnostics);
+
+/// All clips of a file, or the one that `text` names after '#', as motions of `character`, as above. Errors:
+/// the same.
+Result<std::vector<Animation>> motions_of_file(const Character& character, const Humanoid& humanoid,
+                                               const std::string& text, Diagnostics& diagnostics);
 
 /// The first frame of that clip, or the rest pose of a file without clips, on the floor. Errors: the same but
 /// for files without clips.

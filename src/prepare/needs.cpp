@@ -28,7 +28,9 @@ bool is_one_of(SceneKind scene, std::initializer_list<SceneKind> kinds) {
 
 bool is_alive(const Given& given) { return behaviour_settings(given.settings).kind != Behaviour::limp; }
 
-bool lives_or_gets_up(const Given& given) { return is_alive(given) || given.settings.get_up_s.has_value(); }
+bool lives_or_gets_up(const Given& given) {
+  return is_alive(given) || gets_up_after_s(given.settings).has_value();
+}
 
 bool draws(const BakeSettings& settings) { return !settings.sheet.empty() || !settings.preview.empty(); }
 
@@ -80,7 +82,7 @@ const std::vector<Need>& needs() {
        "--stiffness above 0",
        [](const Given& g) { return is_alive(g) || tone_of(g.settings.simulation) > 0.0; }},
       {{"assist"}, "--outcome", [](const Given& g) { return g.settings.outcome.has_value(); }},
-      {{"get-up-style"}, "--get-up", [](const Given& g) { return g.settings.get_up_s.has_value(); }},
+      {{"get-up-style"}, "--get-up", [](const Given& g) { return gets_up_after_s(g.settings).has_value(); }},
       {{"active-k", "active-file", "active-delay"},
        "the active restriction (--active)",
        [](const Given& g) { return g.settings.simulation.active != Active::off; }},

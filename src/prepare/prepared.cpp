@@ -5,6 +5,7 @@
 #include "base/errors.h"
 #include "body/on_ground.h"
 #include "humanoid/rotations.h"
+#include "prepare/get_up_clips.h"
 #include "prepare/impact.h"
 #include "prepare/needs.h"
 #include "prepare/start.h"
@@ -134,6 +135,12 @@ Result<Prepared> prepare_bake(const Character& character, const BakeSettings& se
   if (!body) return body.error();
   prepared.body = std::move(*body);
   widen_for_start(prepared, diagnostics);
+  if (!settings.get_up_clip.empty()) {
+    auto library =
+        get_up_clips(character, prepared.humanoid, prepared.body, settings.get_up_clip, diagnostics);
+    if (!library) return library.error();
+    prepared.get_ups = std::make_shared<const std::vector<RisingClip>>(std::move(*library));
+  }
   auto thresholds = load_active_thresholds(settings.active_file);
   if (!thresholds) return thresholds.error();
   prepared.thresholds = *thresholds;

@@ -1,6 +1,7 @@
 // What the simulation of a bake is given.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "prepare/settings.h"
 #include "restrict/active.h"
 #include "restrict/range_of_motion.h"
+#include "rise/rising_clip.h"
 #include "simulate/simulate.h"
 
 namespace ukemi {
@@ -34,6 +36,8 @@ struct Prepared {
   BehaviourSettings behaviour;
   BodyPose
       home;  // what a body that keeps its feet comes back to: the start pose, or its stance after a motion
+
+  std::shared_ptr<const std::vector<RisingClip>> get_ups;  // a library to get up by; null: none is asked for
 
   Actor actor(const Character& character) const { return {character, humanoid, start, body}; }
 };

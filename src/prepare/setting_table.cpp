@@ -473,6 +473,12 @@ Settings behaviour_settings_table() {
            {"heavy", GetUpStyle::heavy},
            {"hurt", GetUpStyle::hurt}},
           "manner of getting up", [](auto& s) -> auto& { return s.get_up_style; }),
+      text<S>(
+          "get-up-clip", "FILE[#NAME]|DIR",
+          "get up as somebody did: the get-up of a file or a folder that begins nearest to how the body lies "
+          "leads it, "
+          "where it is in reach; it ends as the clip ends (implies --get-up)",
+          [](auto& s) -> auto& { return s.get_up_clip; }),
       number<S>(
           "seed", "N", Range{0.0, 4294967295.0},
           "another take of the same blow: stance, latency, arms and steps vary as people do; 0: the mean of "

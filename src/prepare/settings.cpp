@@ -13,8 +13,14 @@ std::string reaction_name(const BakeSettings& settings) {
 
 double simulated_s(const BakeSettings& settings) {
   if (settings.simulation.duration_s) return *settings.simulation.duration_s;
-  if (settings.get_up_s) return 12.0;
+  if (gets_up_after_s(settings)) return 12.0;
   return behaviour_settings(settings).kind == Behaviour::limp ? 3.0 : 4.0;
+}
+
+std::optional<double> gets_up_after_s(const BakeSettings& settings) {
+  constexpr double kLies_s = 0.8;
+  if (settings.get_up_s || settings.get_up_clip.empty()) return settings.get_up_s;
+  return kLies_s;
 }
 
 BehaviourSettings behaviour_settings(const BakeSettings& settings) {

@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "base/random.h"
 #include "body/weight.h"
+#include "rise/figure_motion.h"
 #include "rise/get_up_routes.h"
 #include "rise/whole_body.h"
 
@@ -52,12 +53,6 @@ double smooth_step(double x) {
 
 Vec3 level(const Vec3& v) { return {v.x(), 0.0, v.z()}; }
 double yaw_of(const Vec3& direction) { return std::atan2(-direction.z(), direction.x()); }
-
-/// 0 to 1, most of it at the end: a weight that is felt evenly, because it competes with ones 300 times less.
-double growing(double x) {
-  constexpr double kTimes = 300.0;
-  return (std::pow(kTimes, x) - 1.0) / (kTimes - 1.0);
-}
 
 /// Farthest skin of a segment along `d` (its frame) among points that count; `fallback` where there is none.
 template <typename Counts>
@@ -123,21 +118,6 @@ std::array<OuterSkin, kContacts> contact_skins(const WholeBody& whole) {
       for (const Segment s : {Segment::thigh_l, Segment::thigh_r}) add(c, s, upper);
   }
   return skins;
-}
-
-OuterSkin trunk_skin(const WholeBody& whole) {
-  OuterSkin skin;
-  for (const Segment s :
-       {Segment::pelvis, Segment::abdomen, Segment::chest, Segment::thigh_l, Segment::thigh_r})
-    skin[index(s)] = whole.skin()[index(s)];
-  return skin;
-}
-
-double lowest_of(const OuterSkin& skin, const BodyPose& pose) {
-  double low = std::numeric_limits<double>::infinity();
-  for (int s = 0; s < kSegmentCount; ++s)
-    for (const Vec3& p : skin[s]) low = std::min(low, (pose[s] * p).y());
-  return std::isfinite(low) ? low : 0.0;
 }
 
 /// Corners on the ground of what bears at a contact.
@@ -223,7 +203,9 @@ class Planner {
   std::vector<Vec2> balance_path() const;
   FigurePose reference_at(double time_s) const;
   std::vector<FigurePose> references() const;
-  std::vector<FigurePose> smoothed(const std::vector<FigurePose>& figures, double sigma_s) const;
+  std::vector<FigurePose> smoothed(const std::vector<FigurePose>& figures, double sigma_s) const {
+    return ukemi::smoothed(whole_, figures, sigma_s * settings_.fps);
+  }
   std::vector<FigurePose> guided(const std::vector<FigurePose>& reference,
                                  const std::vector<Vec2>& balance) const;
   std::vector<FigurePose> balanced_motion(std::vector<Vec2>& balance) const;
@@ -464,31 +446,6 @@ void Planner::solve_key(const KeyPose& key, const PlannedKey& following) {
   keys_.push_back(next);
 }
 
-/// Joints go straight in their charts, where ranges are nearly convex.
-FigurePose between(const WholeBody& whole, const FigurePose& a, const FigurePose& b, double u) {
-  FigurePose figure;
-  figure.place = (1.0 - u) * a.place + u * b.place;
-  figure.turn = a.turn.slerp(u, b.turn);
-  PerJoint<SwingTwist> charts = whole.charts(a.joints);
-  const PerJoint<SwingTwist> to = whole.charts(b.joints);
-  for (int j = 0; j < kJointCount; ++j) {
-    charts[j].swing = (1.0 - u) * charts[j].swing + u * to[j].swing;
-    charts[j].twist = (1.0 - u) * charts[j].twist + u * to[j].twist;
-  }
-  figure.joints = whole.joints(charts);
-  return figure;
-}
-
-/// What differs from the reference in one frame, on the reference of the next.
-FigurePose carried_on(const FigurePose& reference, const FigurePose& figure, const FigurePose& next) {
-  FigurePose result;
-  result.place = next.place + figure.place - reference.place;
-  result.turn = (figure.turn * reference.turn.conjugate() * next.turn).normalized();
-  for (int j = 0; j < kJointCount; ++j)
-    result.joints[j] = (next.joints[j] * reference.joints[j].conjugate() * figure.joints[j]).normalized();
-  return result;
-}
-
 /// Share of the way from the last key to the next.
 double Planner::eased(double time_s) const {
   const int i = interval(time_s);
@@ -525,43 +482,6 @@ std::vector<FigurePose> Planner::references() const {
   for (int f = 0; f <= last; ++f)
     figures.push_back(carried_by_speed(reference_at(f / settings_.fps), f / settings_.fps));
   return figures;
-}
-
-std::vector<FigurePose> Planner::smoothed(const std::vector<FigurePose>& figures, double sigma_s) const {
-  const int count = static_cast<int>(figures.size());
-  std::vector<FigurePose> result;
-  std::vector<PerJoint<SwingTwist>> charts;
-  for (const FigurePose& figure : figures) charts.push_back(whole_.charts(figure.joints));
-  for (int f = 0; f < count; ++f) {
-    const int edge = std::min(f, count - 1 - f);
-    const double sigma = std::min(sigma_s * settings_.fps, edge / 2.5);
-    const int reach = std::min(edge, static_cast<int>(std::ceil(2.5 * sigma)));
-    if (sigma < 1e-6) {
-      result.push_back(figures[f]);
-      continue;
-    }
-    Vec3 place = Vec3::Zero(), turn = Vec3::Zero();
-    PerJoint<SwingTwist> mean_chart{};
-    double sum = 0.0;
-    for (int k = -reach; k <= reach; ++k) {
-      const double weight = std::exp(-0.5 * k * k / (sigma * sigma));
-      const FigurePose& other = figures[f + k];
-      sum += weight;
-      place += weight * other.place;
-      turn += weight * log_rotation(figures[f].turn.conjugate() * other.turn);
-      for (int j = 0; j < kJointCount; ++j) {
-        mean_chart[j].swing += weight * charts[f + k][j].swing;
-        mean_chart[j].twist += weight * charts[f + k][j].twist;
-      }
-    }
-    FigurePose mean = figures[f];
-    mean.place = place / sum;
-    mean.turn = (mean.turn * exp_rotation(turn / sum)).normalized();
-    for (SwingTwist& chart : mean_chart) chart.swing /= sum, chart.twist /= sum;
-    mean.joints = whole_.joints(mean_chart);
-    result.push_back(mean);
-  }
-  return result;
 }
 
 /// Where the centre of mass goes: straight from key to key, rounded.

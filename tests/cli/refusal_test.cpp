@@ -73,6 +73,22 @@ TEST_F(Refusal, OfClipSettingsThatDoNotGoTogether) {
                  "--smooth 30 is not below half of the 60 frames per second");
 }
 
+TEST_F(Refusal, OfGetUpClipsInWhichNobodyGetsUp) {
+  const std::string mannequin = std::string(UKEMI_ASSETS_FOLDER) + "/characters/mannequin.glb";
+  const auto with = [](const std::string& clip) {
+    return std::vector<std::string>{"bake", "mannequin", "-o", "a.glb", "--get-up-clip", clip};
+  };
+  expect_refused(with(mannequin), kMustChange,
+                 "nobody gets up from the floor in it: looked at mannequin.glb: ");
+  expect_refused(with(mannequin + "#walk"), kMustChange, "looked at mannequin.glb: walk\n");
+  expect_refused(with(mannequin + "#wlak"), kMustChange, "did you mean 'walk'?");
+  expect_refused(with("missing.glb"), kMustChange, "missing.glb");
+  fs::create_directory(folder / "empty");
+  expect_refused(with("empty"), kMustChange, "holds no file with motion");
+  write("box.gltf", kBox);
+  expect_refused(with("box.gltf"), kMustChange, "not a humanoid");
+}
+
 TEST_F(Refusal, OfOptionsThatWouldDoNothing) {
   expect_refused({"bake", "mannequin", "-o", "a.vrma", "--append"}, kMustChange,
                  "--append is for glTF and FBX");

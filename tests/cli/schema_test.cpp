@@ -83,6 +83,15 @@ TEST_F(Schema, ReportsOfEveryKindOfBake) {
   EXPECT_FALSE(limp["response"]["pelvis_contact"].is_null());
   with({"--preset", "football", "--recover", "0.3"});
   EXPECT_FALSE(with({"--behaviour", "limp", "--get-up", "0.5"})["response"]["get_up"].is_null());
+  const Words kick = {"--preset", "kick", "--strength", "2", "--steps", "0"};
+  Words library = {"bake", "mannequin", "--get-up", "--clip-only", "-o", "getups.glb", "--quiet"};
+  library.insert(library.end(), kick.begin(), kick.end());
+  ASSERT_EQ(run(library).status, 0);
+  Words led = kick;
+  led.insert(led.end(), {"--get-up-clip", "getups.glb"});
+  const Json get_up = with(led)["response"]["get_up"];
+  EXPECT_EQ(get_up["route"], "clip");
+  EXPECT_TRUE(get_up["clip"]["leads"]);
   EXPECT_FALSE(with({"--clip", "walk", "--at", "0.4", "--duration", "0.3", "--root-motion",
                      "root"})["clip"]["root_curve_m"]
                    .is_null());
