@@ -51,9 +51,9 @@ constexpr double kHurries = 2.1, kHurriesFrom = 0.1;  // 1/m, m: for a body that
 // Springs, shares.
 constexpr double kStanding = 0.6, kStandingAnkle = 0.2, kSwinging = 2.0, kSwingingAnkle = 0.8;
 constexpr double kTrunk = 1.0, kArm = 0.7;
-// N m at knee and ankle of a leg in the air, of a man of 73 kg: twice what walkers use (Winter 1991: 0.5 N
-// m/kg at the knee). All that a knee can give would throw the thigh back, and the hip could not bring the leg
-// forward.
+// N m at knee and ankle of a leg in the air, of a man of 73 kg and 1.741 m: about twice what a walker's knee
+// gives in the swing (Winter 1991). All that a knee can give (250) would throw the thigh back, against a hip
+// that can give 180; of 60 walks 29 go on without this bound, 36 with 50, 38 with 75 N m.
 constexpr double kSwingingKnee = 75.0, kSwingingFoot = 30.0;
 constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
 constexpr double kAhead_s = 0.004;  // postures are compared over so long
