@@ -35,6 +35,7 @@ constexpr double kComing_s = 0.2;      // before it lands, the pelvis gives way 
 constexpr double kDeepest = 0.15;      // m: by so much at most,
 constexpr double kGivesWay_s = 0.05;   // in that time
 constexpr double kReached = 0.985;     // of the leg
+constexpr double kOnGround = 0.01;     // m: a foot so low at the start stands
 constexpr double kBearing_s = 0.02;    // until a foot on the ground bears what it is to
 constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
 constexpr double kSlipped = 0.10;      // m: a foot that was moved so far stands there now
@@ -50,6 +51,10 @@ constexpr double kHurries = 2.1, kHurriesFrom = 0.1;  // 1/m, m: for a body that
 // Springs, shares.
 constexpr double kStanding = 0.6, kStandingAnkle = 0.2, kSwinging = 2.0, kSwingingAnkle = 0.8;
 constexpr double kTrunk = 1.0, kArm = 0.7;
+// N m at knee and ankle of a leg in the air, of a man of 73 kg and 1.741 m: about twice what a walker's knee
+// gives in the swing (Winter 1991). All that a knee can give (250) would throw the thigh back, against a hip
+// that can give 180; of 60 walks 29 go on without this bound, 36 with 50, 38 with 75 N m.
+constexpr double kSwingingKnee = 75.0, kSwingingFoot = 30.0;
 constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
 constexpr double kAhead_s = 0.004;  // postures are compared over so long
 
@@ -96,7 +101,8 @@ void Striding::start(const Senses& senses) {
     while (f.stand < stands.size() && stands[f.stand].until_s <= 0.0) ++f.stand;
     f.stands = f.stand < stands.size() && stands[f.stand].from_s <= 0.0;
     f.in_air = !f.stands;
-    f.bears = leg(side).touches(senses) ? 1.0 : 0.0;
+    // No contact is known yet.
+    f.bears = f.stands && leg(side).lowest_corner(senses) < m(kOnGround) ? 1.0 : 0.0;
     f.planted = senses.pose[ukemi::index(leg(side).foot)].translation;
     if (!f.stands) steps_.push_back({leg(side).foot, 0.0, std::nullopt, 0.0});
   }
@@ -454,6 +460,13 @@ void Striding::ask_standing_leg(const Senses& senses, const View& view, BodySide
   }
 }
 
+void Striding::ask_at_most(Joint joint, double most_n_m) {
+  for (JointGoal& goal : asked_.joints[ukemi::index(joint)]) {
+    goal.least_n_m.setConstant(-most_n_m * physique_.strength);
+    goal.most_n_m.setConstant(most_n_m * physique_.strength);
+  }
+}
+
 void Striding::ask_swinging_leg(const Senses& senses, const View& view, BodySide side) {
   const Leg& l = leg(side);
   const Vec3 hip = joint_at(senses, l.hip);
@@ -475,6 +488,8 @@ void Striding::ask_swinging_leg(const Senses& senses, const View& view, BodySide
                -physique_.weight_torque(senses, joints[k]), share[k], s(kSwingDamping_s)},
               asked_);
   }
+  ask_at_most(l.knee, kSwingingKnee);
+  ask_at_most(l.ankle, kSwingingFoot);
 }
 
 void Striding::ask_upper_body(const Senses& senses, const View& view) {

@@ -78,6 +78,7 @@ class Striding : public OnFeet {
   void ask(const Senses& senses);
   void ask_standing_leg(const Senses& senses, const View& view, BodySide side);
   void ask_swinging_leg(const Senses& senses, const View& view, BodySide side);
+  void ask_at_most(Joint joint, double most_n_m);
   void ask_upper_body(const Senses& senses, const View& view);
   LegPosture posture(const BodyPose& gait, BodySide side, const Vec3& hip, const Vec3& ankle) const;
   Vec3 swing_ankle(const BodyPose& gait, const View& view, BodySide side, double phase_s) const;

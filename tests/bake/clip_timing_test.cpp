@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "bake/response.h"
 #include "clip/ground_motion.h"
@@ -13,6 +14,7 @@
 #include "export/additive.h"
 #include "load/load.h"
 #include "prepare/direction.h"
+#include "support/extra_data.h"
 
 namespace ukemi {
 namespace {
@@ -212,6 +214,37 @@ void expect_goes_on(const BakedClip& outcome) {
 
 TEST(GoingOn, WhoWalksUnhitWalksOn) { expect_goes_on(baked(hit_while_walking(0.0))); }
 
+TEST(GoingOn, WhoWalksUnhitIsSoonWithHisClipFromAnyMoment) {
+  for (const double at_s : {0.1, 0.6, 1.0}) {
+    BakeSettings settings = hit_while_walking(0.0);
+    settings.at_s = at_s;
+    const BakedClip outcome = baked(settings);
+    ASSERT_TRUE(outcome.behaviour.goes_on) << at_s;
+    EXPECT_LT(outcome.behaviour.goes_on->time_s, 1.3) << at_s;
+  }
+}
+
+/// A captured walk of another body on a character with short legs.
+TEST(GoingOn, WithACapturedWalkToo) {
+  const auto folder = extra_data();
+  if (!folder) GTEST_SKIP() << kNoExtraData;
+  const auto walker = *folder / "characters/quaternius_fbx/Male_Casual.fbx";
+  const auto walk = *folder / "mocap/cmu_bvh/cmu_12_01_walk.bvh";
+  if (!std::filesystem::exists(walker) || !std::filesystem::exists(walk)) GTEST_SKIP() << kNoExtraData;
+  Diagnostics diagnostics;
+  const auto character = load_character(walker, {}, diagnostics);
+  ASSERT_TRUE(character);
+  for (const double at_s : {0.5, 0.9}) {
+    BakeSettings settings = hit_while_walking(0.0);
+    settings.clip = walk.string();
+    settings.at_s = at_s;
+    const auto outcome = bake(*character, settings, diagnostics);
+    ASSERT_TRUE(outcome);
+    EXPECT_TRUE(outcome->behaviour.goes_on) << at_s;
+    EXPECT_FALSE(outcome->behaviour.fall_begins_s) << at_s;
+  }
+}
+
 TEST(GoingOn, WhoIsHitALittleWalksOn) {
   const BakedClip outcome = baked(hit_while_walking(0.33));
   expect_goes_on(outcome);
@@ -221,8 +254,8 @@ TEST(GoingOn, WhoIsHitALittleWalksOn) {
 }
 
 TEST(GoingOn, WhoIsHitTooHardComesToStandAndItIsSaid) {
-  BakeSettings settings = hit_while_walking(1.0);
-  settings.from = *parse_direction("back");
+  BakeSettings settings = hit_while_walking(1.27);
+  settings.from = *parse_direction("left");
   Diagnostics diagnostics;
   const auto outcome = bake(mannequin(), settings, diagnostics);
   ASSERT_TRUE(outcome);
