@@ -101,8 +101,14 @@ class ReportFigures : public testing::Test {
     f.help_n_s = 4.5;
     outcome().trials = 3;
     outcome().score = 0.875;
-    outcome().get_up = GetUpTimes{"belly", 0.48, 0.56, {{"stands", 0.56}}, {}};
+    const NearestClip clip{"up", 0.35, 0.08, 33.0, 0.45, true, 2.5, Joint::knee_l};
+    outcome().get_up = GetUpTimes{"belly", 0.48, 0.56, {{"stands", 0.56}}, {}, clip};
     std::vector<BodyPose>& frames = outcome().timeline.trajectory.frames;
+    const double begins_s = outcome().timeline.impact_s + 0.48;
+    const auto& at =
+        frames.at(static_cast<std::size_t>(std::lround(begins_s * outcome().timeline.trajectory.fps)));
+    const Vec3 place = at[index(Segment::hand_l)].translation + Vec3(0.012, 0.0, 0.0);
+    outcome().get_up->planted = {{Segment::hand_l, Vec3::Zero(), place, 0, 0}};
     BodyPose last = frames.at(10);  // of the impact
     const Quat turn(Eigen::AngleAxisd(radians(25.0), Vec3::UnitY()));
     last[0] = {turn * last[0].rotation, last[0].translation + Vec3(0.3, -0.2, 0.9)};
@@ -228,7 +234,10 @@ void expect_response(Expected& e) {
   e.is(r + "first_knee_contact/time_s", 0.63), e.is(r + "first_knee_contact/speed_m_s", 1.9);
   e.is(r + "muscle_torque_max_share", 0.71), e.is(r + "muscle_work_j", 53.0);
   e.is(r + "get_up/begins_s", 0.68), e.is(r + "get_up/stands_s", 0.76);
-  e.is(r + "get_up/phases/0/time_s", 0.76);
+  e.is(r + "get_up/phases/0/time_s", 0.76), e.is(r + "get_up/slide_max_m", 0.012);
+  e.is(r + "get_up/clip/from_s", 0.35), e.is(r + "get_up/clip/apart_m", 0.08);
+  e.is(r + "get_up/clip/turned_deg", 33.0), e.is(r + "get_up/clip/needed_s", 0.45);
+  e.is(r + "get_up/clip/excess_deg", 2.5);
   e.is(r + "travel_m/0", 0.3), e.is(r + "travel_m/1", -0.2), e.is(r + "travel_m/2", 0.9);
   e.is(r + "turn_deg", 25.0), e.is(r + "delivered_n_s", 21.0), e.is(r + "trials", 3.0);
   e.is(r + "score", 0.875), e.is(r + "assist_n_s", 4.5);

@@ -92,7 +92,7 @@ Sample Measure::simulated(int hit, const std::string& run, double times, const S
   auto result = simulate(simulation_input(prepared_, hit_by, settings, behaviour), diagnostics);
   std::optional<GetUpTimes> up;
   if (result && run == "get-up")
-    up = add_get_up(prepared_.body, prepared_.range, prepared_.start.state.segments, skin_,
+    up = add_get_up({prepared_.body, prepared_.range, prepared_.start.state.segments, skin_, nullptr},
                     {GetUpStyle::plain, 0, settings.fps}, result->trajectory);
   add_cost(thread_seconds() - before, sample);
   sample.failed = !result || (run == "get-up" && !up);
