@@ -15,10 +15,10 @@ namespace {
 /// A legal value that is not the default.
 std::string another_value(const Setting& setting) {
   static const std::map<std::string_view, std::string> texts = {
-      {"hit", "head"},       {"from", "30,10"},         {"preset", "kick"},    {"scene", "fall"},
-      {"region", "diamond"}, {"active-file", "a.toml"}, {"rate", "fixed:480"}, {"map", "head=Head"},
-      {"unit", "0.0254"},    {"root", "Hips"},          {"pose", "guard"},     {"clip", "walk"},
-      {"knockout-at", "0.3"}};
+      {"hit", "head"},           {"from", "30,10"},         {"preset", "kick"},    {"scene", "fall"},
+      {"region", "diamond"},     {"active-file", "a.toml"}, {"rate", "fixed:480"}, {"map", "head=Head"},
+      {"unit", "0.0254"},        {"root", "Hips"},          {"pose", "guard"},     {"clip", "walk"},
+      {"get-up-clip", "getups"}, {"knockout-at", "0.3"}};
   const BakeSettings defaults;
   const auto values = setting.get(defaults);
   const std::string current = values.empty() ? "" : values.front();
