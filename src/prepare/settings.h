@@ -62,7 +62,7 @@ struct BakeSettings {
   std::optional<double> get_up_s;    // gets up after lying for this time; unless given: stays down
   GetUpStyle get_up_style = GetUpStyle::plain;
   std::string get_up_clip;  // FILE, FILE#NAME or a folder of clips that lead the get-up; empty: planned
-  double seed = 0;  // varies stance, latency, arms and steps; 0: the mean of all
+  double seed = 0;          // varies stance, latency, arms and steps; 0: the mean of all
   // method
   std::string region = "human";        // name or file, see load_range_of_motion
   std::optional<RangeOfMotion> range;  // in place of the region's
@@ -99,7 +99,8 @@ std::string reaction_name(const BakeSettings& settings);
 /// Simulated time, s. Default: 3 for a limp body, 4 for a living one, 12 with a get-up, which begins at rest.
 double simulated_s(const BakeSettings& settings);
 
-/// Seconds that a body lies before it gets up; a clip to get up by asks for that, too. Nothing: it stays down.
+/// Seconds that a body lies before it gets up; a clip to get up by asks for that, too. Nothing: it stays
+/// down.
 std::optional<double> gets_up_after_s(const BakeSettings& settings);
 
 /// The behaviour in force.

@@ -71,7 +71,8 @@ TEST(Humanoid, NamesOfSidesWinOverTheFeetWithAWarning) {
   const auto humanoid = map_humanoid(character, {}, diagnostics);
   ASSERT_TRUE(humanoid);
   ASSERT_EQ(diagnostics.warnings().size(), 1u);
-  EXPECT_NE(diagnostics.warnings()[0].what.find("the names say, the feet point backwards; they are believed"), std::string::npos);
+  EXPECT_NE(diagnostics.warnings()[0].what.find("the names say, the feet point backwards; they are believed"),
+            std::string::npos);
   EXPECT_EQ(node_of(character, *humanoid, Segment::forearm_l), "mixamorig:LeftForeArm");
 }
 
