@@ -1,4 +1,4 @@
-// The flinch: what head, trunk and arms do after a blow, whatever becomes of the balance.
+// The flinch: what head, trunk and arms do after a blow, with or without balance.
 #pragma once
 
 #include "base/math.h"
@@ -10,7 +10,7 @@ struct FlinchSettings {
   Vec3 way = Vec3::Zero();  // unit, world: the way the blow travels; zero: no blow
   double size = 1.0;        // 1: of a blow that changes the body's speed by 0.13 m/s or more
   double begins_s = 0.06, rise_s = 0.14, holds_until_s = 0.32, falls_s = 0.48;
-  double left_arm = 1.2, right_arm = 0.8;  // nobody's arms react alike
+  double left_arm = 1.2, right_arm = 0.8;  // arms react unequally
 };
 
 class Flinch {

@@ -10,7 +10,7 @@
 namespace ukemi {
 namespace {
 
-constexpr double kDown = 0.045;      // of the leg: a sole whose lowest corner is so low may stand
+constexpr double kDown = 0.045;      // of the leg: a sole whose lowest corner is lower may stand
 constexpr double kStill = 0.45;      // of the speed of the gait, and
 constexpr double kStill_m_s = 0.15;  // faster by that: a sole that moves more does not stand
 constexpr double kShortestGap_s = 0.06, kShortestStand_s = 0.07;

@@ -11,7 +11,7 @@ namespace {
 
 // Balance.
 constexpr double kSpinShare = 0.58;  // of the turning that becomes speed when it is stopped
-constexpr double kEdge = 0.02;       // m: pressure keeps so far inside the soles
+constexpr double kEdge = 0.02;       // m: distance that pressure keeps from the edge of the soles
 constexpr double kPush = 1.5;        // pressure beyond the capture point, per metre from the reference
 constexpr double kCalmPush = 2.5;    // the same once a step has been taken and the capture point is inside
 constexpr double kLift = 75.0, kLiftDamping = 14.0;         // 1/s^2, 1/s: height
@@ -22,23 +22,23 @@ constexpr double kHelp = 1.5;                      // of what stops the capture 
 constexpr double kReaction_s = 0.06;               // from nothing to everything
 
 constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
-constexpr double kAhead_s = 0.004;  // postures are compared over so long
+constexpr double kAhead_s = 0.004;  // time between the postures that give a speed
 
 // Steps.
 constexpr double kFastest_s = 0.22;
 constexpr double kSwing_m_s = 2.8, kLongestSwing_s = 0.4;  // of a foot over its way
 
-constexpr double kWellUp = 0.06;       // m: no foot rolls over its toes so high
-constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point so far beyond the feet
+constexpr double kWellUp = 0.06;       // m: a foot higher than this does not roll over its toes
+constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point farther beyond the feet
 constexpr double kOutOfStride = 1.4;   // the same while a stride that has begun is not at its end
 constexpr double kLongestStep = 1.03;  // of the leg
 constexpr double kAgain = 0.6;         // m: cost of a step with the foot that has just landed
-constexpr double kHovers = 0.015;      // m: a foot that is late and so near to the ground stands
+constexpr double kHovers = 0.015;      // m: a late foot that is nearer to the ground stands
 constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
-constexpr double kBearing_s = 0.02;    // until a foot off the ground pushes no more
-constexpr double kSlipped = 0.10;      // m: a foot that was moved so far stands there now
-constexpr double kSinking = 0.82, kSunk = 0.72;  // height of the centre of mass over that at home
-constexpr double kToesClear = 0.03;              // m: toes of a foot in the air are so far from the ground
+constexpr double kBearing_s = 0.02;    // time until a foot off the ground pushes no more
+constexpr double kSlipped = 0.10;      // m: a foot that was moved farther stands there now
+constexpr double kSinking = 0.82, kSunk = 0.72;  // height of the centre of mass, over its height at home
+constexpr double kToesClear = 0.03;              // m: from the toes of a foot in the air to the ground
 constexpr double kLevelBy = 0.8, kSwungThroughLevelBy = 0.5;  // of the step: then the foot is level
 constexpr double kSwungUntil = 0.9;                           // of the step: then it comes down
 constexpr double kHeel = 1.03;                                // of the leg, by the heel

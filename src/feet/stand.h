@@ -41,7 +41,7 @@ struct StandSettings {
   double narrow_m = 0.40;             // a step aside while going forward is at most so wide
   double strength = 1.0;              // of the drives; a dazed body has less
   std::optional<BodySide> first_foot;
-  std::optional<double> gives_in_s;  // lets himself fall from then on
+  std::optional<double> gives_in_s;  // from then on the body does not try to stand
   Help help;
   PerSide<bool> arms_free{true, true};
   PerSide<double> arm_size{1.1, 0.9};  // of catching arms

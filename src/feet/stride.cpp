@@ -19,26 +19,27 @@ constexpr double kMostAlong = 0.7;                          // of that: along th
 constexpr double kLeastShare = 0.06;                        // of it: on either of two feet
 
 // Steps.
-constexpr double kCatch = 1.12;  // of the way that the capture point is off: the foot lands so far beyond
+constexpr double kCatch =
+    1.12;  // times the error of the capture point: how far the foot lands beyond its place
 constexpr double kCatchFlying = 0.6;   // the same out of a flight
 constexpr double kFlight_s = 0.03;     // both feet are in the air for more
 constexpr double kShareOfBoth = 0.5;   // of the time on both feet: the error still grows
 constexpr double kLongestReach = 0.8;  // of the leg: from the centre of mass to a foot that lands
-constexpr double kAside = 0.09;        // m: a foot lands so far beside the other, or as near as in the gait
-constexpr double kToesClear = 0.05;    // m: toes of a foot in the air are so far from the ground
-constexpr double kLandsFrom = 0.6;     // of a step
-constexpr double kLandsBy_s = 0.03;    // before its end, a foot that touches stands wherever it is,
-constexpr double kNear = 0.15;         // m: and earlier where it is as near to its place
-constexpr double kOverdue_s = 0.1;     // a foot is lifted even if the other does not bear
-constexpr double kLate_m_s = 0.5;      // a foot that is late goes down
-constexpr double kComing_s = 0.2;      // before it lands, the pelvis gives way to a foot that goes far,
-constexpr double kDeepest = 0.15;      // m: by so much at most,
-constexpr double kGivesWay_s = 0.05;   // in that time
-constexpr double kReached = 0.985;     // of the leg
-constexpr double kOnGround = 0.01;     // m: a foot so low at the start stands
-constexpr double kBearing_s = 0.02;    // until a foot on the ground bears what it is to
-constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
-constexpr double kSlipped = 0.10;      // m: a foot that was moved so far stands there now
+constexpr double kAside = 0.09;  // m: least distance to the side of the other foot, unless the gait has less
+constexpr double kToesClear = 0.05;   // m: from the toes of a foot in the air to the ground
+constexpr double kLandsFrom = 0.6;    // of a step
+constexpr double kLandsBy_s = 0.03;   // before its end, a foot that touches stands wherever it is,
+constexpr double kNear = 0.15;        // m: and earlier where it is as near to its place
+constexpr double kOverdue_s = 0.1;    // a foot is lifted even if the other does not bear
+constexpr double kLate_m_s = 0.5;     // a foot that is late goes down
+constexpr double kComing_s = 0.2;     // time before a far step lands in which the pelvis sinks,
+constexpr double kDeepest = 0.15;     // m: at most,
+constexpr double kGivesWay_s = 0.05;  // with this time constant
+constexpr double kReached = 0.985;    // of the leg
+constexpr double kOnGround = 0.01;    // m: a foot so low at the start stands
+constexpr double kBearing_s = 0.02;   // time until a foot on the ground bears its load
+constexpr double kSettle_s = 0.08;    // a foot that lands takes its place
+constexpr double kSlipped = 0.10;     // m: a foot that was moved farther stands there now
 
 // Pace of the gait.
 constexpr double kWaits = 0.25;     // for a foot that is late
@@ -51,12 +52,12 @@ constexpr double kHurries = 2.1, kHurriesFrom = 0.1;  // 1/m, m: for a body that
 // Springs, shares.
 constexpr double kStanding = 0.6, kStandingAnkle = 0.2, kSwinging = 2.0, kSwingingAnkle = 0.8;
 constexpr double kTrunk = 1.0, kArm = 0.7;
-// N m at knee and ankle of a leg in the air, of a man of 73 kg and 1.741 m: about twice what a walker's knee
-// gives in the swing (Winter 1991). All that a knee can give (250) would throw the thigh back, against a hip
-// that can give 180; of 60 walks 29 go on without this bound, 36 with 50, 38 with 75 N m.
+// N m at knee and ankle of a leg in the air, of a man of 73 kg and 1.741 m. All that a knee can give (250)
+// throws the thigh back, against a hip that gives 180: of 60 walks 29 go on without this bound, 36 with 50 N
+// m at the knee, 38 with 75.
 constexpr double kSwingingKnee = 75.0, kSwingingFoot = 30.0;
 constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
-constexpr double kAhead_s = 0.004;  // postures are compared over so long
+constexpr double kAhead_s = 0.004;  // time between the postures that give a speed
 
 // When balance is lost, and when it goes well.
 constexpr double kSunk = 0.6;                       // of the height of a body that stands

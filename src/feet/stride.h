@@ -94,7 +94,7 @@ class Striding : public OnFeet {
   double phase_s_ = 0.0;  // moment of the gait, s from the blow
   double pace_ = 1.0;     // its speed
   double sunk_m_ = 0.0;   // below the gait, so that the legs reach
-  double well_s_ = 0.0;   // it has gone as the gait does for so long
+  double well_s_ = 0.0;   // time for which it has gone as the gait does
   PerSide<Foot> feet_;
   std::vector<StepTaken> steps_;
   Goals asked_;

@@ -378,7 +378,7 @@ void Planner::place_likeness(const KeyPose& key, const PlannedKey& next, PoseGoa
   if (key.keeps_body) goals.place_weight = Vec3(30.0, 30.0, 30.0);
 }
 
-/// The likeness with contacts: those that have a place stay in it, the others come down.
+/// The likeness with contacts: contacts with a place stay in it, the others come down.
 PoseGoals Planner::with_contacts(PoseGoals goals, const PlannedKey& next,
                                  const std::array<bool, kContacts>& placed) const {
   for (int c = 0; c < kContacts; ++c) {
@@ -1015,7 +1015,7 @@ Way choose(const ArticulatedBody& body, const BodyPose& lying, const GetUpSettin
   return {sits, -level(up), open};
 }
 
-/// The ways round that are tried until one is sound.
+/// Ways to turn, in the order in which they are tried.
 std::vector<WayRound> ways_round(bool a_is_right, bool knees_lie) {
   std::vector<WayRound> ways;
   for (const int mends : {kMends, kMoreMends})
@@ -1032,7 +1032,7 @@ Result<GetUp> plan_get_up(const ArticulatedBody& body, const RangeOfMotion& rang
                           const GetUpSettings& settings) {
   if (lying_of(body, lying) == Lying::upright)
     return usage_error("there is nothing to get up from: the body does not lie, sit or kneel",
-                       "leave --get-up away");
+                       "leave out --get-up");
   Random random(settings.seed ^ 0x6765745f7570ull);
   Way choice = choose(body, lying, settings, random);
   for (KeyPose& key : choice.route.keys) {

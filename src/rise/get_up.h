@@ -37,7 +37,7 @@ struct PlantedPart {
 
 struct GetUp {
   double fps = 60.0;
-  std::vector<BodyPose> frames;  // the first is the lying pose, the last the standing pose where he stands up
+  std::vector<BodyPose> frames;  // the first is the lying pose, the last the standing pose at the new place
   std::vector<GetUpPhase> phases;
   std::vector<PlantedPart> planted;
   std::string route;  // "sits", "side", "prone", "seated", "kneeling"

@@ -50,7 +50,7 @@ struct AxisGoal {
   double weight = 0.0;
 };
 
-/// The lowest of these points lies on the floor, or so high above it; weight 1/m.
+/// The lowest of these points lies on the floor or at the given height above it; weight 1/m.
 struct TouchGoal {
   const OuterSkin* points = nullptr;
   double weight = 0.0;
