@@ -19,8 +19,7 @@ constexpr double kMostAlong = 0.7;                          // of that: along th
 constexpr double kLeastShare = 0.06;                        // of it: on either of two feet
 
 // Steps.
-constexpr double kCatch =
-    1.12;  // times the error of the capture point: how far the foot lands beyond its place
+constexpr double kCatch = 1.12;        // of the capture point's error: how far beyond its place a foot lands
 constexpr double kCatchFlying = 0.6;   // the same out of a flight
 constexpr double kFlight_s = 0.03;     // both feet are in the air for more
 constexpr double kShareOfBoth = 0.5;   // of the time on both feet: the error still grows
