@@ -96,8 +96,11 @@ void Alert::drive(double time_s, Goals& goals) const {
       for (const JointGoal& goal : standing.joints[j])
         if (share > 0.0) goals.joints[j].push_back(weakened(goal, share));
     }
-    goals.firm_soles = standing.firm_soles && !falling_.begun();
-    if (!falling_.begun()) goals.help_n += standing.help_n;
+    if (!falling_.begun()) {
+      goals.firm_soles = standing.firm_soles;
+      goals.glides = standing.glides;
+      goals.help_n += standing.help_n;
+    }
   }
   falling_.drive(time_s, goals);
 }

@@ -47,6 +47,7 @@ void KnockedOut::drive(double time_s, Goals& goals) const {
   if (!out_s_) return;
   goals.help_n *= left;
   goals.firm_soles = false;
+  goals.glides.fill(false);
   for (auto& joint : goals.joints)
     for (JointGoal& goal : joint) goal = weakened(goal, left);
   if (left <= 0.0) limp_.drive(time_s, goals);

@@ -21,7 +21,7 @@ class OnFeet {
   virtual void start(const Senses& senses) = 0;
   /// After an accepted step of length `h`.
   virtual void observe(const Senses& senses, double h) = 0;
-  virtual void drive(Goals& goals) const = 0;
+  void drive(Goals& goals) const;
 
   /// When and why balance was lost: what follows is a fall.
   const std::optional<double>& lost_s() const { return lost_s_; }
@@ -35,6 +35,8 @@ class OnFeet {
   virtual const Physique& physique() const = 0;
 
  protected:
+  Goals asked_;  // since the last accepted step
+
   void lose(double time_s, const char* why) {
     lost_s_ = time_s;
     lost_why_ = why;

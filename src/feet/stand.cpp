@@ -21,8 +21,7 @@ constexpr double kHipLean = 4.0, kMostLean = 0.7;  // rad per m of the capture p
 constexpr double kHelp = 1.5;                      // of what stops the capture point
 constexpr double kReaction_s = 0.06;               // from nothing to everything
 
-constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
-constexpr double kAhead_s = 0.004;  // time between the postures that give a speed
+constexpr double kDamping_s = 0.12;
 
 // Steps.
 constexpr double kFastest_s = 0.22;
@@ -30,7 +29,7 @@ constexpr double kSwing_m_s = 2.8, kLongestSwing_s = 0.4;  // of a foot over its
 
 constexpr double kWellUp = 0.06;       // m: a foot higher than this does not roll over its toes
 constexpr double kOutOfReach = 1.05;   // of the leg: no step catches a capture point farther beyond the feet
-constexpr double kOutOfStride = 1.4;   // the same while a stride that has begun is not at its end
+constexpr double kOutOfStride = 1.4;   // the same of a body that walks or runs
 constexpr double kLongestStep = 1.03;  // of the leg
 constexpr double kAgain = 0.6;         // m: cost of a step with the foot that has just landed
 constexpr double kHovers = 0.015;      // m: a late foot that is nearer to the ground stands
@@ -38,7 +37,12 @@ constexpr double kSettle_s = 0.08;     // a foot that lands takes its place
 constexpr double kBearing_s = 0.02;    // time until a foot off the ground pushes no more
 constexpr double kSlipped = 0.10;      // m: a foot that was moved farther stands there now
 constexpr double kSinking = 0.82, kSunk = 0.72;  // height of the centre of mass, over its height at home
-constexpr double kToesClear = 0.03;              // m: from the toes of a foot in the air to the ground
+constexpr double kHigh = 0.135;  // m: a foot so far up, over its height at home, sinks all the way
+// m: a foot that lags so far behind its way is waited for; the more, the farther; at most so much of the
+// time. A thigh gains some 350 degrees a second where a hurried way asks for 700: the shank must not go ahead
+// of it.
+constexpr double kLags = 0.15, kLagsFarther = 0.2, kMostWait = 0.7;
+constexpr double kToesClear = 0.03;  // m: from the toes of a foot in the air to the ground
 constexpr double kLevelBy = 0.8, kSwungThroughLevelBy = 0.5;  // of the step: then the foot is level
 constexpr double kSwungUntil = 0.9;                           // of the step: then it comes down
 constexpr double kHeel = 1.03;                                // of the leg, by the heel
@@ -224,18 +228,11 @@ void Standing::observe(const Senses& senses, double h) {
   ask(senses, view);
 }
 
-void Standing::drive(Goals& goals) const {
-  for (int j = 0; j < kJointCount; ++j)
-    goals.joints[j].insert(goals.joints[j].end(), asked_.joints[j].begin(), asked_.joints[j].end());
-  goals.firm_soles = goals.firm_soles || asked_.firm_soles;
-  goals.help_n += asked_.help_n;
-}
-
 // ---- the state machine
 
 void Standing::choose(const Senses& senses, const View& view, double h) {
   if (lost_s()) {
-    if (phase_ == Phase::swing) swing_on(senses, view);
+    if (phase_ == Phase::swing) swing_on(senses, view, h);
     return;
   }
   switch (phase_) {
@@ -244,7 +241,7 @@ void Standing::choose(const Senses& senses, const View& view, double h) {
     case Phase::shift:
       return shift_on(senses, view, h);
     case Phase::swing:
-      return swing_on(senses, view);
+      return swing_on(senses, view, h);
   }
 }
 
@@ -326,7 +323,15 @@ void Standing::lift(const Senses& senses, const View& view, BodySide side, bool 
   steps_.push_back({leg(side).foot, senses.time_s, std::nullopt, 0.0});
 }
 
-void Standing::swing_on(const Senses& senses, const View& view) {
+/// How much farther a foot in the air has to go than its way has, m.
+double Standing::lag(const Senses& senses) const {
+  const Vec3 target = swing_target();
+  const Vec3& ankle = senses.pose[ukemi::index(leg(swing_.side).foot)].translation;
+  return on_ground(target - ankle).norm() - on_ground(target - swing_ankle(senses.time_s)).norm();
+}
+
+void Standing::swing_on(const Senses& senses, const View& view, double h) {
+  swing_.lift_s += h * std::clamp((lag(senses) - m(kLags)) / m(kLagsFarther), 0.0, kMostWait);
   const double phase = (senses.time_s - swing_.lift_s) / swing_.span_s;
   if (phase < 0.85) {
     const double left = std::max(0.0, swing_.lift_s + swing_.span_s - senses.time_s);
@@ -442,10 +447,9 @@ void Standing::watch(const Senses& senses, const View& view, double h) {
     closings_ = 0;
   }
   if (lost_s() || active(senses.time_s) <= 0.0) return;
-  const bool first_stride = under_way_ && phase_ == Phase::swing && steps_.size() == 1;
   const double reach = settings_.most_steps == 0
                            ? m(0.25)
-                           : (first_stride ? kOutOfStride : kOutOfReach) * physique_.leg_length_m;
+                           : (under_way_ ? kOutOfStride : kOutOfReach) * physique_.leg_length_m;
   const double tilt = (senses.pose[0].rotation * home_[0].rotation.conjugate() * Vec3::UnitY()).y();
   // A long robe touches the ground beside feet that stand, and so does a shank above its ankle in a lunge.
   const auto bears = [&](const SegmentContact& c) {
@@ -569,8 +573,8 @@ Standing::Wrench Standing::wrench_of(const Senses& senses, const View& view) con
   const double height = home_height_ - (home_[0].translation.y() - pelvis_height(senses, view));
   const double lift = kLift / physique_.size * (height - senses.com.y()) -
                       kLiftDamping / physique_.tempo * senses.com_velocity.y();
-  const double up =
-      mass * std::clamp(physique_.gravity + b * lift, 0.4 * physique_.gravity, 1.7 * physique_.gravity);
+  const double up = mass * std::clamp(physique_.gravity + b * lift, 0.4 * physique_.weight_m_s2(),
+                                      1.7 * physique_.weight_m_s2());
   const Quat upright = attitude_of(view);
   const Vec3 lean = log_rotation(senses.pose[0].rotation * upright.conjugate());
   Vec3 moment = b * strength * (-kUpright * lean - kUprightDamping * senses.angular_velocity[0]);
@@ -613,11 +617,17 @@ LegPosture Standing::standing_posture(const Senses& senses, const View& view, Bo
   return leg(side).reach(pelvis + attitude * leg(side).hip_in_pelvis, ankle, view.yaw, leg(side).yaw(senses));
 }
 
+/// Of the ankle of a foot in the air, where the foot will be flat on the ground.
+Vec3 Standing::swing_target() const {
+  const Leg& l = leg(swing_.side);
+  const Quat foot = Quat(Eigen::AngleAxisd(swing_.to_yaw, Vec3::UnitY())) * l.home_foot;
+  return at_height(swing_.to, 0.0) - foot * l.sole_middle;
+}
+
 Vec3 Standing::swing_ankle(double time_s) const {
   const Leg& leg_in_air = leg(swing_.side);
   const double phase = (time_s - swing_.lift_s) / swing_.span_s;
-  const Quat foot = Quat(Eigen::AngleAxisd(swing_.to_yaw, Vec3::UnitY())) * leg_in_air.home_foot;
-  const Vec3 target = at_height(swing_.to, 0.0) - foot * leg_in_air.sole_middle;
+  const Vec3 target = swing_target();
   const double along = min_jerk(phase / 0.85);
   const double most = swing_.closing ? 0.05 : 0.09;
   const double top = std::max(swing_.from.y(), leg_in_air.home_ankle_m + m(most));
@@ -627,10 +637,13 @@ Vec3 Standing::swing_ankle(double time_s) const {
   const double u = std::clamp(phase / 0.85, 0.0, 1.0);
   const Vec3 carried = duration * u * (1.0 + u * u * (-6.0 + u * (8.0 - 3.0 * u))) * swing_.from_velocity;
   at += carried;
-  at.y() = carried.y() + risen + (target.y() - risen) * min_jerk((phase - 0.55) / 0.45) -
+  const bool high = swing_.from.y() > leg_in_air.home_ankle_m + m(kHigh);
+  const double sinks_from = high ? 0.0 : 0.55;
+  at.y() = carried.y() + risen + (target.y() - risen) * min_jerk((phase - sinks_from) / (1.0 - sinks_from)) -
            m_s(0.5) * std::max(0.0, time_s - swing_.lift_s - swing_.span_s);
   if (!under_way_) return at;
   // The toes of a foot that swings through have not come level yet: they clear the ground too.
+  const Quat foot = Quat(Eigen::AngleAxisd(swing_.to_yaw, Vec3::UnitY())) * leg_in_air.home_foot;
   const Quat turned = swing_foot(phase, foot);
   double lowest = 0.0;
   for (const Vec3& corner : leg_in_air.sole) lowest = std::min(lowest, (turned * corner).y());
@@ -699,18 +712,7 @@ void Standing::ask_swinging_leg(const Senses& senses) {
   const Vec3 hip_velocity = senses.velocity[0] + senses.angular_velocity[0].cross(hip - senses.centre[0]);
   const LegPosture now = swinging_posture(hip, senses.time_s);
   const LegPosture next = swinging_posture(hip + kAhead_s * hip_velocity, senses.time_s + kAhead_s);
-  const std::array<Joint, 3> joints = {l.hip, l.knee, l.ankle};
-  const std::array<Segment, 3> parents = {Segment::pelvis, l.thigh, l.shank};
-  const std::array<Quat, 3> goal = {now.thigh, now.shank, now.foot};
-  const std::array<Quat, 3> soon = {next.thigh, next.shank, next.foot};
-  const std::array<double, 3> share = {2.0, 2.0, 0.8};
-  for (int k = 0; k < 3; ++k) {
-    const int parent = ukemi::index(parents[k]);
-    const Vec3 omega =
-        log_rotation(soon[k] * goal[k].conjugate()) / kAhead_s - senses.angular_velocity[parent];
-    ask_joint(joints[k], {senses.pose[parent].rotation.conjugate() * goal[k], omega,
-                          -physique_.weight_torque(senses, joints[k]), share[k], s(kSwingDamping_s)});
-  }
+  ukemi::ask_swinging_leg(physique_, settings_.strength, l, senses, now, next, asked_);
 }
 
 void Standing::ask_upper_body(const Senses& senses) {

@@ -34,7 +34,7 @@ struct StandSettings {
   std::optional<UnderWay> under_way;  // nothing: the body stands in its home pose
   int most_steps = 6;                 // of a recovery; 0: the feet stay where they are
   double latency_s = 0.10;            // after the blow nothing but passive body and tone acts
-  double lift_s = 0.16;               // earliest moment that a foot leaves the ground
+  double lift_s = 0.18;               // earliest moment that a foot leaves the ground
   double foot_bias_m = 0.0;           // cost of stepping with the left foot
   double step_scale = 1.0;            // of the way to the capture point
   double swing_s = 0.307;             // of an unhurried step
@@ -55,7 +55,6 @@ class Standing : public OnFeet {
 
   void start(const Senses& senses) override;
   void observe(const Senses& senses, double h) override;
-  void drive(Goals& goals) const override;
 
   bool calm() const override { return calm_s_ > 0.0; }
   const std::vector<StepTaken>& steps() const override { return steps_; }
@@ -66,7 +65,7 @@ class Standing : public OnFeet {
   enum class Phase { stand, shift, swing };
   struct Swing {
     BodySide side = BodySide::left;
-    double lift_s = 0.0, span_s = 0.3;
+    double lift_s = 0.0, span_s = 0.3;  // lift_s: later for a foot that lags behind its way
     bool closing = false;
     bool in_air = false;       // the foot has left the ground
     Vec3 from = Vec3::Zero();  // ankle at the lift
@@ -89,7 +88,8 @@ class Standing : public OnFeet {
   void choose(const Senses& senses, const View& view, double h);
   void stand_on(const Senses& senses, const View& view, double h);
   void shift_on(const Senses& senses, const View& view, double h);
-  void swing_on(const Senses& senses, const View& view);
+  void swing_on(const Senses& senses, const View& view, double h);
+  double lag(const Senses& senses) const;
   bool must_step(const View& view, double time_s) const;
   BodySide stepping_foot(const View& view) const;
   double cost_of(const View& view, BodySide swing) const;
@@ -111,6 +111,7 @@ class Standing : public OnFeet {
   double pelvis_height(const Senses& senses, const View& view) const;
   LegPosture standing_posture(const Senses& senses, const View& view, BodySide side, const Vec2& shift) const;
   LegPosture swinging_posture(const Vec3& hip_at, double time_s) const;
+  Vec3 swing_target() const;
   Vec3 swing_ankle(double time_s) const;
   Quat swing_foot(double phase, const Quat& level) const;
   void ask_standing_leg(const Senses& senses, const View& view, const Wrench& wrench, BodySide side);
@@ -153,7 +154,6 @@ class Standing : public OnFeet {
   double pelvis_y_ = 0.0;      // wanted
   double arms_up_ = 0.0;       // 0 to 1
   std::vector<StepTaken> steps_;
-  Goals asked_;
 };
 
 }  // namespace ukemi

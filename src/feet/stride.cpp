@@ -23,6 +23,7 @@ constexpr double kCatch = 1.12;        // of the capture point's error: how far 
 constexpr double kCatchFlying = 0.6;   // the same out of a flight
 constexpr double kFlight_s = 0.03;     // both feet are in the air for more
 constexpr double kShareOfBoth = 0.5;   // of the time on both feet: the error still grows
+constexpr double kMostOfBoth_s = 0.3;  // that time, at most
 constexpr double kLongestReach = 0.8;  // of the leg: from the centre of mass to a foot that lands
 constexpr double kAside = 0.09;  // m: least distance to the side of the other foot, unless the gait has less
 constexpr double kToesClear = 0.05;   // m: from the toes of a foot in the air to the ground
@@ -49,14 +50,9 @@ constexpr double kSlowest = 0.6, kFastest = 1.66;
 constexpr double kHurries = 2.1, kHurriesFrom = 0.1;  // 1/m, m: for a body that falls aside
 
 // Springs, shares.
-constexpr double kStanding = 0.6, kStandingAnkle = 0.2, kSwinging = 2.0, kSwingingAnkle = 0.8;
+constexpr double kStanding = 0.6, kStandingAnkle = 0.2;
 constexpr double kTrunk = 1.0, kArm = 0.7;
-// N m at knee and ankle of a leg in the air, of a man of 73 kg and 1.741 m. All that a knee can give (250)
-// throws the thigh back, against a hip that gives 180: of 60 walks 29 go on without this bound, 36 with 50 N
-// m at the knee, 38 with 75.
-constexpr double kSwingingKnee = 75.0, kSwingingFoot = 30.0;
-constexpr double kDamping_s = 0.12, kSwingDamping_s = 0.10;
-constexpr double kAhead_s = 0.004;  // time between the postures that give a speed
+constexpr double kDamping_s = 0.12;
 
 // When balance is lost, and when it goes well.
 constexpr double kSunk = 0.6;                       // of the height of a body that stands
@@ -119,12 +115,6 @@ void Striding::observe(const Senses& senses, double h) {
   sunk_m_ += std::min(1.0, h / s(kGivesWay_s)) * (out_of_reach(senses, view) - sunk_m_);
   watch(senses, view, h);
   ask(senses);
-}
-
-void Striding::drive(Goals& goals) const {
-  for (int j = 0; j < kJointCount; ++j)
-    goals.joints[j].insert(goals.joints[j].end(), asked_.joints[j].begin(), asked_.joints[j].end());
-  goals.firm_soles = goals.firm_soles || asked_.firm_soles;
 }
 
 std::optional<BodySide> Striding::swinging() const {
@@ -200,9 +190,9 @@ void Striding::see_balance(View& view) const {
 void Striding::see_force(const Senses& senses, View& view) const {
   const double lift = kLift / physique_.size * (view.gait_com.y() - sunk_m_ - senses.com.y()) +
                       kLiftDamping / physique_.tempo * (view.gait_velocity.y() - senses.com_velocity.y());
-  const double up =
-      physique_.mass_kg * std::clamp(physique_.gravity + view.gait_acceleration.y() + lift,
-                                     kLeastLoad * physique_.gravity, kMostLoad * physique_.gravity);
+  const double up = physique_.mass_kg * std::clamp(physique_.gravity + view.gait_acceleration.y() + lift,
+                                                   kLeastLoad * physique_.weight_m_s2(),
+                                                   kMostLoad * physique_.weight_m_s2());
   const double strength = physique_.strength * settings_.strength;
   const Vec3 lean = log_rotation(senses.pose[0].rotation * view.gait[0].rotation.conjugate());
   const Vec3 turning = log_rotation(view.soon[0].rotation * view.gait[0].rotation.conjugate()) / kAhead_s;
@@ -318,7 +308,10 @@ void Striding::land(const Senses& senses, BodySide side) {
 /// Of the capture point, when the foot has landed and bears.
 Vec2 Striding::error_at_landing(const View& view, BodySide side, double left_s) const {
   const auto theirs = stand_of(other(side));
-  const double both = foot(other(side)).stands && theirs ? std::max(0.0, theirs->until_s - phase_s_) : 0.0;
+  // A foot that the gait never lifts again stands for long: the error does not grow until then.
+  const double both = foot(other(side)).stands && theirs
+                          ? std::clamp(theirs->until_s - phase_s_, 0.0, left_s + kMostOfBoth_s)
+                          : 0.0;
   const double flight_s = std::max(0.0, left_s - both);
   const double grounded_s = std::min(both, left_s + kShareOfBoth * std::max(0.0, both - left_s));
   Vec2 error = view.error;
@@ -460,13 +453,6 @@ void Striding::ask_standing_leg(const Senses& senses, const View& view, BodySide
   }
 }
 
-void Striding::ask_at_most(Joint joint, double most_n_m) {
-  for (JointGoal& goal : asked_.joints[ukemi::index(joint)]) {
-    goal.least_n_m.setConstant(-most_n_m * physique_.strength);
-    goal.most_n_m.setConstant(most_n_m * physique_.strength);
-  }
-}
-
 void Striding::ask_swinging_leg(const Senses& senses, const View& view, BodySide side) {
   const Leg& l = leg(side);
   const Vec3 hip = joint_at(senses, l.hip);
@@ -474,22 +460,7 @@ void Striding::ask_swinging_leg(const Senses& senses, const View& view, BodySide
   const LegPosture now = posture(view.gait, side, hip, swing_ankle(view.gait, view, side, phase_s_));
   const LegPosture next = posture(view.soon, side, hip + kAhead_s * hip_velocity,
                                   swing_ankle(view.soon, view, side, phase_s_ + pace_ * kAhead_s));
-  const std::array<Joint, 3> joints = {l.hip, l.knee, l.ankle};
-  const std::array<Segment, 3> parents = {Segment::pelvis, l.thigh, l.shank};
-  const std::array<Quat, 3> goal = {now.thigh, now.shank, now.foot};
-  const std::array<Quat, 3> soon = {next.thigh, next.shank, next.foot};
-  const std::array<double, 3> share = {kSwinging, kSwinging, kSwingingAnkle};
-  for (int k = 0; k < 3; ++k) {
-    const int parent = ukemi::index(parents[k]);
-    const Vec3 omega =
-        log_rotation(soon[k] * goal[k].conjugate()) / kAhead_s - senses.angular_velocity[parent];
-    ask_joint(physique_, settings_.strength, joints[k],
-              {senses.pose[parent].rotation.conjugate() * goal[k], omega,
-               -physique_.weight_torque(senses, joints[k]), share[k], s(kSwingDamping_s)},
-              asked_);
-  }
-  ask_at_most(l.knee, kSwingingKnee);
-  ask_at_most(l.ankle, kSwingingFoot);
+  ukemi::ask_swinging_leg(physique_, settings_.strength, l, senses, now, next, asked_);
 }
 
 void Striding::ask_upper_body(const Senses& senses, const View& view) {

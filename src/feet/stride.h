@@ -25,7 +25,6 @@ class Striding : public OnFeet {
 
   void start(const Senses& senses) override;
   void observe(const Senses& senses, double h) override;
-  void drive(Goals& goals) const override;
 
   const std::vector<StepTaken>& steps() const override { return steps_; }
   std::optional<BodySide> swinging() const override;
@@ -78,7 +77,6 @@ class Striding : public OnFeet {
   void ask(const Senses& senses);
   void ask_standing_leg(const Senses& senses, const View& view, BodySide side);
   void ask_swinging_leg(const Senses& senses, const View& view, BodySide side);
-  void ask_at_most(Joint joint, double most_n_m);
   void ask_upper_body(const Senses& senses, const View& view);
   LegPosture posture(const BodyPose& gait, BodySide side, const Vec3& hip, const Vec3& ankle) const;
   Vec3 swing_ankle(const BodyPose& gait, const View& view, BodySide side, double phase_s) const;
@@ -97,7 +95,6 @@ class Striding : public OnFeet {
   double well_s_ = 0.0;   // time for which it has gone as the gait does
   PerSide<Foot> feet_;
   std::vector<StepTaken> steps_;
-  Goals asked_;
 };
 
 }  // namespace ukemi

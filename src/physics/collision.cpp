@@ -240,6 +240,7 @@ void Collision::touch(const Contacts& contacts, const ContactSettings& settings)
         contact.fdir1[2] = slip.z();
       }
     }
+    if (sole && settings.glides[index(colliders_[pair.b].segment)]) surface.mu = 0.0;
     dJointAttach(dJointCreateContact(world_.id(), world_.contacts(), &contact), a, b);
   }
 }

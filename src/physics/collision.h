@@ -18,6 +18,7 @@ struct ContactSettings {
   double friction = 0.8;
   bool firm_soles = false;                             // soles on the floor do not slip
   std::optional<double> sole_friction = std::nullopt;  // in place of both
+  PerSegment<bool> glides{};                           // without friction on the floor
 };
 
 /// Contacts of one moment: plain data, so that a rejected step can use them again.

@@ -37,6 +37,8 @@ struct Goals {
   PerJoint<std::optional<SoftGoal>> tone;
   /// Soles do not slip while the body balances on them (friction of the soles without a bound).
   bool firm_soles = false;
+  /// Feet that swing: their toes, stiff in this body, do not catch on the floor (no friction there).
+  PerSegment<bool> glides{};
   /// A force from outside on the pelvis, world, N: for outcomes that no person reaches (--assist).
   Vec3 help_n = Vec3::Zero();
 
@@ -45,6 +47,7 @@ struct Goals {
     for (std::vector<JointGoal>& joint : joints) joint.clear();
     tone.fill(std::nullopt);
     firm_soles = false;
+    glides.fill(false);
     help_n.setZero();
   }
 };

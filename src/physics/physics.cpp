@@ -104,8 +104,8 @@ void Physics::step(double time_s, double h, const Goals& goals, const Contacts& 
     if (last)
       for (Muscle& muscle : muscles_) muscle.take_care();
     add_forces(time_s, h, goals);
-    collision_.touch(contacts,
-                     {settings_.sparse_friction, 0.8, goals.firm_soles, scene_.sole_friction(time_s)});
+    collision_.touch(contacts, {settings_.sparse_friction, 0.8, goals.firm_soles,
+                                scene_.sole_friction(time_s), goals.glides});
     dWorldStep(world_.id(), h);
     dJointGroupEmpty(world_.contacts());
     check_speeds(time_s);

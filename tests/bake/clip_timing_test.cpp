@@ -215,7 +215,7 @@ void expect_goes_on(const BakedClip& outcome) {
 TEST(GoingOn, WhoWalksUnhitWalksOn) { expect_goes_on(baked(hit_while_walking(0.0))); }
 
 TEST(GoingOn, WhoWalksUnhitIsSoonWithHisClipFromAnyMoment) {
-  for (const double at_s : {0.1, 0.6, 1.0}) {
+  for (const double at_s : {0.1, 0.3, 0.5, 0.6, 1.0}) {
     BakeSettings settings = hit_while_walking(0.0);
     settings.at_s = at_s;
     const BakedClip outcome = baked(settings);
@@ -243,6 +243,24 @@ TEST(GoingOn, WithACapturedWalkToo) {
     EXPECT_TRUE(outcome->behaviour.goes_on) << at_s;
     EXPECT_FALSE(outcome->behaviour.fall_begins_s) << at_s;
   }
+}
+
+/// The walk ends soon, on a foot that is never lifted again.
+TEST(GoingOn, BeyondTheEndOfACapturedWalkIsNoErrorAndFallsNobody) {
+  const auto folder = extra_data();
+  if (!folder) GTEST_SKIP() << kNoExtraData;
+  BakeSettings settings = hit_while_walking(0.0);
+  settings.clip = (*folder / "mocap/cmu_bvh/cmu_12_01_walk.bvh").string();
+  if (!std::filesystem::exists(*settings.clip)) GTEST_SKIP() << kNoExtraData;
+  settings.scene = SceneKind::impulse;
+  settings.ball_mass_kg = 1.0;
+  settings.ball_speed_m_s = 20.0;
+  settings.from = *parse_direction("left");
+  settings.at_s = 1.0;
+  Diagnostics diagnostics;
+  const auto outcome = bake(mannequin(), settings, diagnostics);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_FALSE(outcome->behaviour.fall_begins_s);
 }
 
 TEST(GoingOn, WhoIsHitALittleWalksOn) {

@@ -56,7 +56,7 @@ TEST(Search, WhoWouldStandFallsWhereTheDirectorSaysSo) {
 }
 
 TEST(Search, WhoWouldFallStandsWhereAPersonCould) {
-  BakeSettings settings = blow(60.0, "150");
+  BakeSettings settings = blow(60.0, "225");
   EXPECT_TRUE(baked(settings).fell());
   settings.outcome = Wanted::stand;
   const Baked stood = baked(settings);
@@ -66,7 +66,7 @@ TEST(Search, WhoWouldFallStandsWhereAPersonCould) {
 }
 
 TEST(Search, WhatNoPersonCouldDoIsSaidOrHelpedTo) {
-  BakeSettings settings = blow(110.0, "back");
+  BakeSettings settings = blow(100.0, "back");
   settings.outcome = Wanted::stand;
   const Baked fallen = baked(settings);
   EXPECT_TRUE(fallen.fell());
@@ -112,7 +112,7 @@ Helps helps_for(double n_s, const std::string& from) {
 }
 
 TEST(Search, HelpIsTheLeastOfEightShares) {
-  for (const auto& [n_s, from] : {std::pair(100.0, "back"), {95.0, "back"}}) {
+  for (const auto& [n_s, from] : {std::pair(100.0, "back"), {80.0, "back"}}) {
     const Helps helps = helps_for(n_s, from);
     EXPECT_GT(helps.least, 0.0) << n_s;
     EXPECT_NEAR(helps.searched, helps.least, 1e-9) << n_s;

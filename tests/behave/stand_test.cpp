@@ -133,10 +133,10 @@ TEST(Stand, WithoutStepsKeepsItsFeetOrFalls) {
 TEST(Stand, DazedIsWorseAtIt) {
   BehaviourSettings dazed;
   dazed.kind = Behaviour::dazed;
-  const SimulationResult run = lives({Segment::chest, -Vec3::UnitX(), 40.0}, dazed);
+  const SimulationResult run = lives({Segment::chest, -Vec3::UnitX(), 35.0}, dazed);
   EXPECT_LE(run.behaviour.steps.size(), 1u);
   EXPECT_TRUE(run.behaviour.fall_begins_s);
-  EXPECT_FALSE(lives({Segment::chest, -Vec3::UnitX(), 40.0}).behaviour.fall_begins_s);
+  EXPECT_FALSE(lives({Segment::chest, -Vec3::UnitX(), 35.0}).behaviour.fall_begins_s);
 }
 
 TEST(Stand, TheSameAgainIsTheSameToTheLastBit) {

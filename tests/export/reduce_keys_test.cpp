@@ -73,7 +73,7 @@ TEST(ReduceKeys, BoundsTheErrorInMetresWhateverTheUnit) {
   const Skeleton centimetres = arm(100.0);
   const Clip clip = turning(metres, 181, swing);
   const ReducedClip a = reduce_keys(metres, clip, {}, {});
-  const ReducedClip b = reduce_keys(centimetres, turning(centimetres, 181, swing), {0.01, {}, {}}, {});
+  const ReducedClip b = reduce_keys(centimetres, turning(centimetres, 181, swing), {.scale = 0.01}, {});
   const ReducedClip c = reduce_keys(centimetres, turning(centimetres, 181, swing), {}, {});
   EXPECT_EQ(a.keys, b.keys);
   EXPECT_GT(c.keys, 2 * b.keys) << "with a metre per unit the same file is a giant";

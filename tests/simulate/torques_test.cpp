@@ -126,6 +126,30 @@ TEST(Physics, WorkOfAPushIsTheEnergyThatTheBodyGets) {
   EXPECT_NEAR(work, energy_of(physics), 0.03 * energy_of(physics));
 }
 
+/// Way of the right foot of a man who stands and moves forward at 1 m/s as a whole, in 25 ms.
+double way_of_a_foot(const Goals& goals) {
+  const test::StandingMan man;
+  StartState start = man.start();
+  for (Rigid& segment : start.segments) segment.translation.y() -= 0.002;  // on the floor
+  start.linear_velocity.fill(Vec3::UnitX());
+  Physics physics(man.body, man.range, *load_active_thresholds(""), MuscleStrength{}, start, Scene{}, {});
+  const double from = physics.segments()[index(Segment::foot_r)].translation.x();
+  for (int i = 0; i * kStep_s < 0.025; ++i) {
+    physics.save();
+    physics.step(i * kStep_s, kStep_s, goals, physics.find_contacts());
+    physics.accept(i * kStep_s, kStep_s);
+  }
+  return physics.segments()[index(Segment::foot_r)].translation.x() - from;
+}
+
+TEST(Physics, AFootThatSwingsGlidesOverTheFloorAndAFirmOneDoesNot) {
+  Goals stands, swings;
+  stands.firm_soles = swings.firm_soles = true;
+  swings.glides[index(Segment::foot_r)] = true;
+  EXPECT_LT(way_of_a_foot(stands), 0.005);
+  EXPECT_GT(way_of_a_foot(swings), 0.015);
+}
+
 TEST(Physics, PutsWhatHitsBackWithTheBody) {
   test::StandingMan man;
   Scene scene;
