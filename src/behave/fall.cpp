@@ -25,8 +25,8 @@ constexpr double kBreathesOn_s = 1.0;   // after rest
 constexpr double kFullTorqueAt = 0.35;  // rad
 constexpr double kLookAhead_s = 0.25;   // a seated trunk that will have sunk then goes on to lie
 constexpr double kStaysSeated = 0.42;   // of its y axis
-constexpr double kChoosesFor_s = 1.2;   // after landing; then a pose must last
-constexpr double kRolledOver_s = 0.25;  // for so long to be another
+constexpr double kChoosesFor_s = 1.2;   // after landing
+constexpr double kRolledOver_s = 0.25;  // on the back, later than that
 constexpr double kTouching = 1.0, kHardTouching = 0.8;  // share of an arm's effort; more where the shoulder
 constexpr double kHardSink_m_s = 2.0;                   // sinks faster than this
 constexpr double kStill_s = 0.5;                        // until a settled body's joints hold still
@@ -191,7 +191,9 @@ void Falling::choose_pose(const Senses& senses, double h) {
   seen_s_ = now == seen_ ? seen_s_ + h : 0.0;
   seen_ = now;
   const bool late = senses.time_s > *landing_.landed_s() + kChoosesFor_s * body_.tau;
-  if (now == pose_ || now == EndPose::standing || seen_s_ < (late ? kRolledOver_s : 0.1) * body_.tau) return;
+  // Late, only who has rolled on to the back lies otherwise: arms that lay beside him would stand up.
+  if (now == pose_ || now == EndPose::standing || (late && now != EndPose::supine)) return;
+  if (seen_s_ < (late ? kRolledOver_s : 0.1) * body_.tau) return;
   pose_ = now;
   for (std::size_t p = 0; p < settling_.size(); ++p)
     if (settling_[p]) settle(static_cast<Part>(p), senses.time_s, 0.7 * body_.tau);
