@@ -295,8 +295,23 @@ Result<Scene> scene_of(const BakeSettings& settings, const BodyPose& start) {
   return scene;
 }
 
+namespace {
+
+/// As artists call it: "hips", "left upper leg".
+std::string in_words(Segment segment) {
+  constexpr PerSegment<std::string_view> kWords = {
+      "hips",      "waist", "torso",    "head",      "shoulder",  "upper arm",
+      "lower arm", "hand",  "shoulder", "upper arm", "lower arm", "hand",
+      "upper leg", "calf",  "foot",     "upper leg", "calf",      "foot"};
+  const std::string_view paper = name(segment);
+  const std::string_view side = paper.ends_with("_l") ? "left " : paper.ends_with("_r") ? "right " : "";
+  return fmt::format("{}{}", side, kWords[index(segment)]);
+}
+
+}  // namespace
+
 std::string blow_in_words(const BakeSettings& settings, const Scene& scene) {
-  const std::string_view target = name(scene.target);
+  const std::string target = in_words(scene.target);
   const std::string& side = settings.from.text;
   switch (scene.kind) {
     case SceneKind::none:

@@ -50,7 +50,7 @@ std::string_view name(SceneKind scene);
 /// of its own carries the ball's momentum. Errors: usage (unknown preset), input (presets file).
 Result<Scene> scene_of(const BakeSettings& settings, const BodyPose& start);
 
-/// "chest hit from front", "left_foot pulled to back", "unhit": what happens, for a title.
+/// "torso hit from front", "left foot pulled to back", "unhit": what happens, in artists' words, for a title.
 std::string blow_in_words(const BakeSettings& settings, const Scene& scene);
 
 /// The preset whose numbers are used, or nothing where the settings replace them all.

@@ -193,8 +193,8 @@ TEST(Scene, IsSaidInWords) {
     return blow_in_words(settings, scene);
   };
   EXPECT_EQ(words(SceneKind::none), "unhit");
-  EXPECT_EQ(words(SceneKind::ball), "hand_l hit from front");
-  EXPECT_EQ(words(SceneKind::pull), "hand_l pulled to front");
+  EXPECT_EQ(words(SceneKind::ball), "left hand hit from front");
+  EXPECT_EQ(words(SceneKind::pull), "left hand pulled to front");
   EXPECT_EQ(words(SceneKind::slip), "the feet slip away to front");
   EXPECT_EQ(words(SceneKind::fall), "falls away from front");
 }
