@@ -190,7 +190,7 @@ void warn_of_the_outcome(const BakeSettings& settings, int trials, Diagnostics& 
                                        : fmt::format("none of {} trials {}s", trials, word);
   const std::string_view way_on = settings.assist
                                       ? "help from outside was tried too: give another --strength"
-                                      : "--search N tries more, --assist lets a force from outside help";
+                                      : "--search N tries more, --assist adds a force from outside";
   diagnostics.warn("", fmt::format("{}: the clip shows what the body does without help; {}", none, way_on));
 }
 

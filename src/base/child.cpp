@@ -102,7 +102,7 @@ std::optional<Error> failure(int status, const ChildLimits& limits, const std::f
   if (WIFSIGNALED(status)) {
     const int number = WTERMSIG(status);
     if (number == SIGKILL)
-      return input_error(path, "gets its reader killed, probably because memory ran out", kSimplify);
+      return input_error(path, "its reader was killed, probably because memory ran out", kSimplify);
     if (number == SIGXCPU) return too_long(path, "processor", limits.processor_s);
     return input_error(path, fmt::format("makes its reader crash (signal {}, {})", number, strsignal(number)),
                        kDamaged);

@@ -315,7 +315,7 @@ class RecipeReader {
   /// "pre-roll" and "lead" are one setting: it may stand in a table once.
   void check_given_once(bool given, const Entry& entry, const Setting& setting) const {
     if (given)
-      fail(entry.at, fmt::format("'{}' stands here under another name, too", entry.key),
+      fail(entry.at, fmt::format("'{}' is set twice, under two names", entry.key),
            fmt::format("write {} once", setting.shown()));
   }
 

@@ -57,7 +57,7 @@ std::string overview() {
          "exit status: 0 done; 1 done, but a check said no; 2 something must change (command line, input "
          "file);\n"
          "             3 the simulation failed; 4 cannot write; 70 a bug of the program\n\n"
-         "example: ukemi bake mannequin --hit chest --from front -o hit.glb -o hit.bvh --sheet hit.png\n";
+         "example: ukemi bake mannequin --hit torso --from front -o hit.glb -o hit.bvh --sheet hit.png\n";
 }
 
 int refuse(const std::string& what, const std::string& fix) { return print_error(usage_error(what, fix)); }

@@ -15,8 +15,8 @@ constexpr double kUncapped_n_m = 1e6;  // the joint's own strength caps what is 
 constexpr std::array<double, 3> kSwinging = {2.0, 2.0, 0.8};  // share of the stiffness: hip, knee, ankle
 constexpr double kSwingDamping_s = 0.10;
 // N m at knee and ankle of a leg in the air, of a man of 73 kg and 1.741 m. All that a knee can give (250)
-// throws the thigh back, against a hip that gives 180: of 60 walks 29 go on without this bound, 36 with 50 N
-// m at the knee, 38 with 75; of 360 blows to bodies that stand 73 % stay up without, 76 % with.
+// throws the thigh back, against a hip that gives 180. Of 60 walks 29 go on without this bound, 36 with
+// 50 at the knee, 38 with 75; of 360 blows to bodies that stand 73 % stay up without, 76 % with.
 constexpr double kSwingingKnee = 75.0, kSwingingFoot = 30.0;
 
 void ask_at_most(const Physique& physique, Joint joint, double most_n_m, Goals& goals) {

@@ -38,9 +38,9 @@ constexpr double kBearing_s = 0.02;    // time until a foot off the ground pushe
 constexpr double kSlipped = 0.10;      // m: a foot that was moved farther stands there now
 constexpr double kSinking = 0.82, kSunk = 0.72;  // height of the centre of mass, over its height at home
 constexpr double kHigh = 0.135;  // m: a foot so far up, over its height at home, sinks all the way
-// m: a foot that lags so far behind its way is waited for; the more, the farther; at most so much of the
-// time. A thigh gains some 350 degrees a second where a hurried way asks for 700: the shank must not go ahead
-// of it.
+// m: a foot that lags so far behind its way is waited for: longer, the farther it lags, up to this share of
+// the time. A thigh gains some 350 degrees a second where a hurried way asks for 700: the shank must not go
+// ahead of it.
 constexpr double kLags = 0.15, kLagsFarther = 0.2, kMostWait = 0.7;
 constexpr double kToesClear = 0.03;  // m: from the toes of a foot in the air to the ground
 constexpr double kLevelBy = 0.8, kSwungThroughLevelBy = 0.5;  // of the step: then the foot is level

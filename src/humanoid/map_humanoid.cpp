@@ -27,7 +27,7 @@ Result<Humanoid> map_humanoid(const Character& character, const HumanoidOptions&
   auto humanoid =
       bones ? humanoid_of(character, *bones, options, diagnostics) : Result<Humanoid>(bones.error());
   if (humanoid) return humanoid;
-  // Names that make no human, on what may have the shape of one.
+  // The names made no human; the shape may.
   const auto shape = find_bones_by_shape(character, options);
   if (!shape) return humanoid;
   auto shaped = humanoid_of(character, *shape, options, diagnostics);

@@ -42,7 +42,7 @@ double lowest_along(const Landmarks& figure, const Vec3& up) {
   return lowest;
 }
 
-/// How a motion lies to an axis that may be up.
+/// How well a motion fits an axis as up.
 struct AxisReading {
   double standing = 0.0;      // share of the frames whose head is above the feet, within 45 degrees
   double floor = 0.0;         // mean height of the lowest joint over the origin, of the body's rise

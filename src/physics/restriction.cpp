@@ -39,8 +39,8 @@ void set_look_ahead(dJointID motor, std::size_t row, const Vec3& axis, double di
 PassiveLimit::PassiveLimit(OdeWorld& world, const Model& model, const ModelJoint& joint, Limits kind)
     : world_(world), model_(model), joint_(joint), kind_(kind) {
   if (kind != Limits::axis && kind != Limits::segments_euler) return;
-  // Euler angles are measured from the orientations that the bodies have when the axes are set: those of a =
-  // 0, alpha = 0.
+  // Euler angles are measured from the orientations that the bodies have when the axes are set:
+  // those of a = 0, alpha = 0.
   const dBodyID child = model.bodies()[joint.child].id;
   const RigidState state = read_state(child);
   const Quat frame = world_from_joint(model, joint);

@@ -74,8 +74,8 @@ int frames_in(const std::vector<Bearing>& rests) {
 }
 
 /// Places of the rests of a segment, in the order of time. A part that bears already stays where it is. A
-/// rest that begins while the segment rests on another point follows from where that is held; others are
-/// where the motion has them in their middle.
+/// rest that begins while the segment rests on another point follows from where that is held; other rests
+/// lie where the motion has the point in the middle of the rest.
 void place_rests(const std::vector<BodyPose>& motion, std::vector<BearingPoint>& points) {
   struct Rest {
     const Vec3* point;

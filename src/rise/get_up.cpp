@@ -361,7 +361,7 @@ PoseGoals Planner::likeness_goals(const KeyPose& key) const {
   return goals;
 }
 
-/// Puts the likeness where the parts that stay say that it is, else where the body was.
+/// Places the target pose by the parts that stay on the floor, else where the body was.
 void Planner::place_likeness(const KeyPose& key, const PlannedKey& next, PoseGoals& goals) const {
   const PlannedKey& last = keys_.back();
   const BodyPose alike = whole_.segments(goals.likeness);
@@ -399,8 +399,8 @@ PlannedKey Planner::touching(const KeyPose& key) const {
   return planned;
 }
 
-/// Where the weight lies at a key: over what bore it on the way there, and over what will bear it on the way
-/// to the following. So it is shifted before a part lifts.
+/// Where the weight lies at a key: over the contacts that bear both before and after it. So it is shifted
+/// before a part lifts.
 std::vector<std::vector<Vec2>> Planner::supports_of(const PlannedKey& next, const PlannedKey& following,
                                                     const std::array<bool, kContacts>& placed,
                                                     const FigurePose& figure) const {
@@ -415,8 +415,8 @@ std::vector<std::vector<Vec2>> Planner::supports_of(const PlannedKey& next, cons
   return supports;
 }
 
-/// Again and again: where new feet come down decides where the body will stand, and that where exactly they
-/// go; where hands and knees come down decides what there is to lean on.
+/// Iterates: where new feet come down decides where the body will stand, and the reverse; where hands and
+/// knees come down decides what there is to lean on.
 void Planner::solve_key(const KeyPose& key, const PlannedKey& following) {
   const PlannedKey& last = keys_.back();
   PlannedKey next = touching(key);
@@ -565,7 +565,7 @@ void Planner::add_swing(int from, int to, int i, double time_s, PoseGoals& goals
   add_pin(to, target, firm, 0.5 * firm, goals);
 }
 
-/// Drawn out of the last place, into the next.
+/// Draws a contact that moves from its last place to its next.
 void Planner::add_on_the_way(int contact, int i, double time_s, const BodyPose& alike,
                              PoseGoals& goals) const {
   constexpr double kLongestEase_s = 0.42;

@@ -21,7 +21,7 @@ struct LedGetUp {
 /// 1. The difference from the clip fades over the time that the way into reach takes (ClipEntry::needed_s, at
 ///    least kShortest_s), with the velocity of the lying body (inertialised: Bollo, "Inertialization", GDC
 ///    2018); the clip gathers speed meanwhile.
-/// 2. What the clip lets bear for a while without sliding stays where it came down; nothing sinks into the
+/// 2. A part that bears without sliding in the clip stays where it came down; nothing sinks into the
 ///    floor y = 0 (skin as the whole body knows it), and joints stay in their ranges.
 /// 3. The first frame is `lying`; `before` is the pose one frame before.
 LedGetUp rise_by_clip(const WholeBody& whole, const RangeOfMotion& range, const BodyPose& before,

@@ -148,7 +148,8 @@ struct Stretch {
 
 double trunk_up(const BodyPose& pose) { return (pose[index(Segment::chest)].rotation * Vec3::UnitY()).y(); }
 
-/// From the first frame on the floor to the last before the figure stands, of all that somebody gets up from.
+/// One stretch for each time that somebody gets up: from the first frame on the floor to the last before the
+/// figure stands.
 std::vector<Stretch> stretches_on_floor(const ArticulatedBody& body, const std::vector<BodyPose>& motion) {
   double highest = 0.0;
   for (const BodyPose& pose : motion) highest = std::max(highest, pose[0].translation.y());

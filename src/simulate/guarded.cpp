@@ -16,12 +16,12 @@ bool sane(const Quat& q) { return std::abs(q.norm() - 1.0) <= kUnit; }
 
 /// What is wrong with a goal, or null.
 const char* fault(const JointGoal& goal) {
-  if (!sane(goal.parent_from_child)) return "asks for a rotation that is none";
-  if (!sane(goal.velocity)) return "asks for a velocity that is no number or absurd";
+  if (!sane(goal.parent_from_child)) return "asks for a rotation that is not finite or not of unit length";
+  if (!sane(goal.velocity)) return "asks for a velocity that is not finite or beyond all bounds";
   if (!sane(goal.feed_forward_n_m) || !sane(goal.least_n_m) || !sane(goal.most_n_m))
-    return "asks for a torque that is no number or absurd";
+    return "asks for a torque that is not finite or beyond all bounds";
   if (!sane(goal.stiffness_n_m_rad) || !sane(goal.damping_n_m_s_rad))
-    return "asks for a stiffness or damping that is no number or absurd";
+    return "asks for a stiffness or damping that is not finite or beyond all bounds";
   if (goal.stiffness_n_m_rad < 0.0 || goal.damping_n_m_s_rad < 0.0)
     return "asks for a stiffness or damping below 0";
   if ((goal.least_n_m.array() > goal.most_n_m.array()).any()) return "asks for a least torque above the most";
@@ -29,8 +29,9 @@ const char* fault(const JointGoal& goal) {
 }
 
 const char* fault(const SoftGoal& goal) {
-  if (!sane(goal.parent_from_child)) return "asks for a rotation that is none";
-  if (!sane(goal.cap_n_m) || goal.cap_n_m < 0.0) return "asks for a torque that is no number or absurd";
+  if (!sane(goal.parent_from_child)) return "asks for a rotation that is not finite or not of unit length";
+  if (!sane(goal.cap_n_m) || goal.cap_n_m < 0.0)
+    return "asks for a torque that is not finite or beyond all bounds";
   return nullptr;
 }
 
@@ -87,7 +88,8 @@ std::optional<ControllerFailure> fault_of(const Goals& goals) {
     if (goals.tone[j])
       if (const char* what = fault(*goals.tone[j])) return ControllerFailure{joint, what};
   }
-  if (!sane(goals.help_n)) return ControllerFailure{"", "asks for help that is no number or absurd"};
+  if (!sane(goals.help_n))
+    return ControllerFailure{"", "asks for help that is not finite or beyond all bounds"};
   return std::nullopt;
 }
 

@@ -15,7 +15,7 @@ namespace ukemi {
 namespace {
 
 constexpr const char* kJudgedRegion = "human";
-constexpr double kYardstickHz = 480.0;
+constexpr double kReferenceHz = 480.0;
 constexpr double kActiveK = 20.0;      // 1/s
 constexpr double kPaperActiveK = 1.0;  // 1/s
 constexpr double kExplodedGain_j = 1000.0;
@@ -118,7 +118,7 @@ SimulationSettings of_the_paper(Limits limits, Active active, double k, double d
   settings.active_k = k;
   settings.tone = 0.0;
   settings.damping = 0.0;
-  settings.fixed_hz = kYardstickHz;
+  settings.fixed_hz = kReferenceHz;
   settings.stop_at_rest = false;
   settings.duration_s = duration_s;
   return settings;

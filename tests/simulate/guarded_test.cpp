@@ -108,23 +108,23 @@ struct BadGoal {
 TEST(GuardedBehaviour, GoalsOfNoNumberOrAbsurdOnesAreAnErrorWithJointAndTime) {
   const BadGoal bad[] = {
       {"rotation of no number", [](JointGoal& g) { g.parent_from_child.coeffs().setConstant(kNan); },
-       "asks for a rotation that is none"},
+       "asks for a rotation that is not finite or not of unit length"},
       {"rotation of length 2", [](JointGoal& g) { g.parent_from_child.coeffs() *= 2.0; },
-       "asks for a rotation that is none"},
+       "asks for a rotation that is not finite or not of unit length"},
       {"velocity of no number", [](JointGoal& g) { g.velocity.x() = kNan; },
-       "asks for a velocity that is no number or absurd"},
+       "asks for a velocity that is not finite or beyond all bounds"},
       {"absurd velocity", [](JointGoal& g) { g.velocity.y() = 1e30; },
-       "asks for a velocity that is no number or absurd"},
+       "asks for a velocity that is not finite or beyond all bounds"},
       {"torque of no number", [](JointGoal& g) { g.feed_forward_n_m.z() = kNan; },
-       "asks for a torque that is no number or absurd"},
+       "asks for a torque that is not finite or beyond all bounds"},
       {"absurd torque", [](JointGoal& g) { g.feed_forward_n_m.z() = -1e300; },
-       "asks for a torque that is no number or absurd"},
+       "asks for a torque that is not finite or beyond all bounds"},
       {"bound without end", [](JointGoal& g) { g.most_n_m.x() = kInfinity; },
-       "asks for a torque that is no number or absurd"},
+       "asks for a torque that is not finite or beyond all bounds"},
       {"stiffness of no number", [](JointGoal& g) { g.stiffness_n_m_rad = kNan; },
-       "asks for a stiffness or damping that is no number or absurd"},
+       "asks for a stiffness or damping that is not finite or beyond all bounds"},
       {"absurd damping", [](JointGoal& g) { g.damping_n_m_s_rad = 1e12; },
-       "asks for a stiffness or damping that is no number or absurd"},
+       "asks for a stiffness or damping that is not finite or beyond all bounds"},
       {"damping below 0", [](JointGoal& g) { g.damping_n_m_s_rad = -1.0; },
        "asks for a stiffness or damping below 0"},
       {"bounds the wrong way", [](JointGoal& g) { std::swap(g.least_n_m, g.most_n_m); },
@@ -153,7 +153,8 @@ TEST(GuardedBehaviour, ToneAndHelpOfNoNumberAreErrorsToo) {
   EXPECT_EQ(tone.error().joint, "neck");
   const auto help = run_with(Faulty::In::drive, [](Goals& goals) { goals.help_n.y() = kInfinity; });
   ASSERT_FALSE(help);
-  EXPECT_EQ(help.error().what, "the behaviour asks for help that is no number or absurd (at 0.100 s)");
+  EXPECT_EQ(help.error().what,
+            "the behaviour asks for help that is not finite or beyond all bounds (at 0.100 s)");
 }
 
 TEST(GuardedBehaviour, AFailureIsRunAgainOnceWithAWarningAndLeavesNothingBehind) {
