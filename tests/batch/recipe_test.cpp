@@ -303,9 +303,9 @@ TEST(Recipe, TakesTheWordsOfArtistsButNotTwoForOneSetting) {
   EXPECT_EQ(all[1].settings.recover_s, 2.0);
   EXPECT_EQ(all[1].name, "a2");
   EXPECT_EQ(all[1].written.at("recover"), "2");
-  expect_refused(kHead + "[settings]\nlead = 1\npre-roll = 2\n[[reaction]]\n", 5, 1, "another name",
+  expect_refused(kHead + "[settings]\nlead = 1\npre-roll = 2\n[[reaction]]\n", 5, 1, "under two names",
                  "write pre-roll once");
-  expect_refused(kHead + "[[matrix]]\nlead = [1, 2]\npre-roll = 2\n", 5, 1, "another name",
+  expect_refused(kHead + "[[matrix]]\nlead = [1, 2]\npre-roll = 2\n", 5, 1, "under two names",
                  "write pre-roll once");
 }
 
