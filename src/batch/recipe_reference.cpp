@@ -38,7 +38,7 @@ outputs = ["glb", "sheet", "report"]
 ## Every combination of the values: here 2 segments x 4 sides = 8 reactions of each character. Any setting may
 ## have several values; single values hold for the whole matrix. There may be many matrices.
 [[matrix]]
-hit = ["head", "chest"]
+hit = ["head", "torso"]
 from = ["front", "back", "left", "right"]
 preset = "punch"
 ## Takes of each combination, and how far they differ from what is written, at random, either way: degrees of
@@ -52,7 +52,7 @@ preset = "punch"
 ## A single one.
 # [[reaction]]
 # name = "shoved"
-# hit = "chest"
+# hit = "torso"
 # from = "back"
 # preset = "tackle"
 
