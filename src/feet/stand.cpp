@@ -421,7 +421,7 @@ Vec2 Standing::landing_place(const View& view, BodySide swing, double time_left)
   double aside = own * view.right_part(way);
   const double plain = aside;
   aside = std::max(aside + 0.5 * m(0.083), m(0.11));
-  if (std::abs(ahead) > 0.6 * std::abs(plain)) aside = std::min(aside, m(settings_.narrow_m));
+  if (std::abs(ahead) > std::abs(plain)) aside = std::min(aside, m(settings_.narrow_m));
   way = ahead * view.forward + own * aside * view.right;
   const double longest = kLongestStep * physique_.leg_length_m;
   if (way.norm() > longest) way *= longest / way.norm();

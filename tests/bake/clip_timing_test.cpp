@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "bake/other_man.h"
 #include "bake/response.h"
 #include "clip/ground_motion.h"
 #include "clip/root_motion.h"
@@ -226,14 +227,10 @@ TEST(GoingOn, WhoWalksUnhitIsSoonWithHisClipFromAnyMoment) {
 
 /// A captured walk of another body on a character with short legs.
 TEST(GoingOn, WithACapturedWalkToo) {
-  const auto folder = extra_data();
-  if (!folder) GTEST_SKIP() << kNoExtraData;
-  const auto walker = *folder / "characters/quaternius_fbx/Male_Casual.fbx";
-  const auto walk = *folder / "mocap/cmu_bvh/cmu_12_01_walk.bvh";
-  if (!std::filesystem::exists(walker) || !std::filesystem::exists(walk)) GTEST_SKIP() << kNoExtraData;
+  const auto character = other_man();
+  const auto walk = extra_data().value_or("") / "mocap/cmu_bvh/cmu_12_01_walk.bvh";
+  if (!character || !std::filesystem::exists(walk)) GTEST_SKIP() << kNoExtraData;
   Diagnostics diagnostics;
-  const auto character = load_character(walker, {}, diagnostics);
-  ASSERT_TRUE(character);
   for (const double at_s : {0.5, 0.9}) {
     BakeSettings settings = hit_while_walking(0.0);
     settings.clip = walk.string();

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "bake/bake.h"
+#include "bake/other_man.h"
 #include "bake/response.h"
 #include "base/character_path.h"
 #include "load/load.h"
-#include "support/extra_data.h"
 
 namespace ukemi {
 namespace {
@@ -153,14 +153,10 @@ TEST(Walk, StopsFromAnyPhaseOfTheStrideWithoutABlow) {
 
 /// Walks of other characters, on the spot and with toes that drag on the floor.
 TEST(Walk, OfOtherCharactersStopsToo) {
-  const auto folder = extra_data();
-  if (!folder) GTEST_SKIP() << kNoExtraData;
-  const auto walker = *folder / "characters/quaternius_fbx/Male_Casual.fbx";
-  const auto library = *folder / "animation_only/kaykit/Med_MovementBasic.glb";
-  if (!std::filesystem::exists(walker) || !std::filesystem::exists(library)) GTEST_SKIP() << kNoExtraData;
+  const auto man = other_man();
+  const auto library = extra_data().value_or("") / "animation_only/kaykit/Med_MovementBasic.glb";
+  if (!man || !std::filesystem::exists(library)) GTEST_SKIP() << kNoExtraData;
   Diagnostics diagnostics;
-  const auto man = load_character(walker, {}, diagnostics);
-  ASSERT_TRUE(man);
   const auto stops = [&](const Character& character, const std::string& clip) {
     int up = 0;
     for (const double at_s : {0.1, 0.3, 0.5, 0.7, 0.9}) {

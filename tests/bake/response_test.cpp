@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "bake/bake.h"
+#include "bake/other_man.h"
 #include "base/character_path.h"
 #include "feet/legs.h"
 #include "load/load.h"
@@ -135,13 +136,23 @@ TEST(FootSlide, OfAFootWithoutLoadIsSmall) {
 
 /// The legs lean on one another after the first blow, and a shank touches the ground in the lunge after the
 /// second.
-TEST(Steps, CatchABlowToTheHeadFromTheSide) {
-  const auto data = extra_data();
-  if (!data) GTEST_SKIP() << kNoExtraData;
+/// Who goes more aside than ahead steps as wide as it takes.
+TEST(Steps, AsideAreAsWideAsTheyHaveToBe) {
+  const auto man = other_man();
+  if (!man) GTEST_SKIP() << kNoExtraData;
+  BakeSettings settings;
+  settings.preset = "kick";
+  settings.from = *parse_direction("back");
   Diagnostics diagnostics;
-  const auto man =
-      load_character(*data / "characters/quaternius_fbx/Male_Casual.fbx", LoadOptions{}, diagnostics);
-  ASSERT_TRUE(man);
+  const auto baked = bake(*man, settings, diagnostics);
+  ASSERT_TRUE(baked);
+  EXPECT_EQ(response_of(*baked).outcome, Outcome::stepped);
+}
+
+TEST(Steps, CatchABlowToTheHeadFromTheSide) {
+  const auto man = other_man();
+  if (!man) GTEST_SKIP() << kNoExtraData;
+  Diagnostics diagnostics;
   for (const double n_s : {25.9, 31.5}) {
     BakeSettings settings;
     settings.hit = Segment::head;

@@ -56,7 +56,7 @@ TEST(Search, WhoWouldStandFallsWhereTheDirectorSaysSo) {
 }
 
 TEST(Search, WhoWouldFallStandsWhereAPersonCould) {
-  BakeSettings settings = blow(60.0, "225");
+  BakeSettings settings = blow(60.0, "120");
   EXPECT_TRUE(baked(settings).fell());
   settings.outcome = Wanted::stand;
   const Baked stood = baked(settings);
